@@ -1,0 +1,3 @@
+//! Prepares the built-in meters.
+
+fn main() {}

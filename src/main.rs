@@ -1,0 +1,3 @@
+//! Reads, writes and logs electricity meters.
+
+fn main() {}
