@@ -1,3 +1,5 @@
 //! Reads, writes and logs electricity meters over Modbus RTU.
-#![doc = ""]
+
 pub mod codec;
+pub mod profile;
+pub mod transport;

@@ -37,6 +37,11 @@ impl ByteOrder {
         matches!(self, Self::Badc | Self::Dcba)
     }
 
+    /// The most significant register of a value, high byte first; `None` without registers.
+    pub fn high_word(self, registers: &[u16]) -> Option<u16> {
+        self.arrange(registers).first().copied()
+    }
+
     /// Turns registers from this order into high word, high byte first, or back: it undoes itself.
     fn arrange(self, registers: &[u16]) -> Vec<u16> {
         let mut words = registers.to_vec();

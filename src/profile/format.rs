@@ -1,0 +1,177 @@
+//! The TOML file of a meter, key by key. Unknown keys are errors; what the values mean is checked
+//! in [`super::load`].
+//!
+//! ```toml
+//! name = "example"
+//! title = "Example Works E1"
+//! manual = "E1 protocol manual, rev. 3"
+//!
+//! [line]                        # the factory setting; all three keys can be left out
+//! baud = 9600
+//! parity = "none"               # none, even, odd
+//! stop_bits = 1                 # 1, 2
+//!
+//! [limits]                      # every key can be left out
+//! highest_unit = 247            # 247, or 255 where the meter uses the reserved numbers
+//! functions = [3, 4, 6, 16]     # default [3, 4]
+//! interchangeable_reads = true  # functions 03 and 04 read the same registers; default false
+//! broadcast_functions = [6]     # obeyed on address 0; default none
+//! read_registers = 125          # the most in one read, 1 to 125
+//! write_registers = 123         # the most in one write, 1 to 123
+//! read_holes = false            # a read may cover registers that no point names
+//! table_registers = 256         # a read must not cross a multiple of this; default no limit
+//! typical_answer = "40ms"       # for planning; default 0s
+//! longest_answer = "500ms"      # the time-out when none is asked for; default 1s
+//! pause = "0s"                  # before each request, where 3.5 characters are not enough
+//!
+//! [identification]              # how to tell that a unit is this meter
+//! point = "device_code"
+//! codes = [57, 58]
+//!
+//! [labels]                      # tables of names that several points share
+//! on_off = { 0 = "off", 1 = "on" }
+//!
+//! [groups]                      # names and globs; `default` is read when nothing is named
+//! default = ["voltage_*", "energy_import"]
+//!
+//! [[points]]
+//! name = "voltage_a"
+//! address = 0x0000              # as on the wire, from 0
+//! type = "i32"                  # u16 i16 u32 i32 u64 i64 f32 f64 hex bits mod10000 letter
+//!                               # time date ascii/N
+//! order = "CDAB"                # ABCD (default), CDAB, BADC, DCBA
+//! scale = 0.1                   # the raw number is multiplied with it; default 1
+//! unit = "V"
+//! about = "phase voltage L1-N"
+//! access = "read"               # read (default), write, read-write
+//! range = [0, 9999]             # raw numbers that may be written
+//! labels = "on_off"             # a table of [labels], or one in place
+//! no_value = { high_word = 0x7FFF, means = "overflow" }  # or raw = 65535, means = "absent"
+//! alone = true                  # must be read by a request of its own
+//! function = 4                  # the one function that reads it, where the two differ
+//! verified = false              # the address was not read in the maker's manual; default true
+//! page = "8"
+//! ```
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+/// The whole file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProfileFile {
+    pub(super) name: Spanned<String>,
+    pub(super) title: String,
+    pub(super) manual: String,
+    #[serde(default)]
+    pub(super) line: LineTable,
+    #[serde(default)]
+    pub(super) limits: LimitsTable,
+    pub(super) identification: Option<IdentificationTable>,
+    #[serde(default)]
+    pub(super) labels: BTreeMap<String, Spanned<LabelTable>>,
+    #[serde(default)]
+    pub(super) groups: BTreeMap<Spanned<String>, Vec<Spanned<String>>>,
+    pub(super) points: Vec<PointTable>,
+}
+
+/// `[line]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LineTable {
+    pub(super) baud: Option<Spanned<u32>>,
+    pub(super) parity: Option<Spanned<String>>,
+    pub(super) stop_bits: Option<Spanned<u8>>,
+}
+
+/// `[limits]`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LimitsTable {
+    pub(super) highest_unit: Option<Spanned<u16>>,
+    pub(super) functions: Option<Vec<Spanned<u8>>>,
+    #[serde(default)]
+    pub(super) interchangeable_reads: bool,
+    #[serde(default)]
+    pub(super) broadcast_functions: Vec<Spanned<u8>>,
+    pub(super) read_registers: Option<Spanned<u16>>,
+    pub(super) write_registers: Option<Spanned<u16>>,
+    #[serde(default)]
+    pub(super) read_holes: bool,
+    pub(super) table_registers: Option<Spanned<u16>>,
+    pub(super) typical_answer: Option<Spanned<String>>,
+    pub(super) longest_answer: Option<Spanned<String>>,
+    pub(super) pause: Option<Spanned<String>>,
+}
+
+/// `[identification]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IdentificationTable {
+    pub(super) point: Spanned<String>,
+    pub(super) codes: Vec<u16>,
+}
+
+/// Names of codes or bits; keys are numbers, decimal or `0x`.
+pub type LabelTable = BTreeMap<String, String>;
+
+/// One of `[[points]]`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointTable {
+    pub(super) name: Spanned<String>,
+    pub(super) address: Spanned<u16>,
+    #[serde(rename = "type")]
+    pub(super) kind: Spanned<String>,
+    pub(super) order: Option<Spanned<String>>,
+    pub(super) scale: Option<Spanned<Number>>,
+    pub(super) unit: Option<String>,
+    #[serde(default)]
+    pub(super) about: String,
+    pub(super) access: Option<Spanned<String>>,
+    pub(super) range: Option<Spanned<(i64, i64)>>,
+    pub(super) labels: Option<Spanned<LabelsKey>>,
+    pub(super) no_value: Option<Spanned<NoValueTable>>,
+    #[serde(default)]
+    pub(super) alone: bool,
+    pub(super) function: Option<Spanned<u8>>,
+    #[serde(default = "verified")]
+    pub(super) verified: bool,
+    #[serde(default)]
+    pub(super) page: String,
+}
+
+const fn verified() -> bool {
+    true
+}
+
+/// A number with or without decimals.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged)]
+pub enum Number {
+    /// Without.
+    Integer(i64),
+    /// With; its shortest form is what was written.
+    Float(f64),
+}
+
+/// The name of a shared table, or the table itself.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub enum LabelsKey {
+    /// A table of `[labels]`.
+    Shared(String),
+    /// A table in place.
+    Own(LabelTable),
+}
+
+/// What stands for "no value": one of the two markers, and what it means.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoValueTable {
+    pub(super) high_word: Option<u16>,
+    pub(super) raw: Option<i64>,
+    pub(super) means: String,
+}

@@ -1,0 +1,344 @@
+//! The strict loader: TOML text to a checked [`Profile`], or one error with file, line and key.
+
+mod point;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::time::Duration;
+
+use toml::Spanned;
+use wildmatch::WildMatch;
+
+use super::error::{Problem, ProfileError};
+use super::format::{IdentificationTable, LimitsTable, LineTable, ProfileFile};
+use super::model::{Group, Identification, Limits, Profile};
+use super::point::Point;
+use crate::codec::{FunctionCode, RegisterRange, RegisterValues, UnitRange};
+use crate::transport::{LineSettings, Parity, StopBits};
+
+/// Loads a profile; `file` is how errors name it.
+///
+/// # Errors
+/// [`ProfileError`] for the first thing that is wrong.
+pub fn load(file: &str, text: &str) -> Result<Profile, ProfileError> {
+    let source = Source { file, text };
+    let table: ProfileFile = toml::from_str(text).map_err(|error| source.syntax(&error))?;
+    source.name(&table.name, "name")?;
+    let limits = limits(&source, &table.limits)?;
+    let points = points(&source, &table, &limits)?;
+    let groups = groups(&source, &table.groups, &points)?;
+    let identification = table
+        .identification
+        .map(|table| identification(&source, table, &points))
+        .transpose()?;
+    Ok(Profile {
+        name: table.name.into_inner(),
+        title: table.title,
+        manual: table.manual,
+        line: line(&source, &table.line)?,
+        limits,
+        identification,
+        groups,
+        points,
+    })
+}
+
+/// The text being loaded: turns places in it into errors.
+struct Source<'a> {
+    file: &'a str,
+    text: &'a str,
+}
+
+impl Source<'_> {
+    fn line_of(&self, offset: usize) -> usize {
+        let before = self.text.get(..offset).unwrap_or(self.text);
+        before.matches('\n').count() + 1
+    }
+
+    fn error(&self, at: Range<usize>, key: impl Into<String>, problem: Problem) -> ProfileError {
+        ProfileError {
+            file: self.file.to_owned(),
+            line: self.line_of(at.start),
+            key: key.into(),
+            problem: Box::new(problem),
+        }
+    }
+
+    fn value<T>(&self, found: &Spanned<T>, key: &str, expected: impl Into<String>) -> ProfileError {
+        let shown = self.text.get(found.span()).unwrap_or_default();
+        let problem = Problem::Value {
+            found: shown.to_owned(),
+            expected: expected.into(),
+        };
+        self.error(found.span(), key, problem)
+    }
+
+    fn syntax(&self, error: &toml::de::Error) -> ProfileError {
+        let start = error.span().map_or(0, |span| span.start);
+        // "unknown field" and the like name the key themselves; for a value of the wrong kind it
+        // stands before the `=`.
+        let before = self.text.get(..start).unwrap_or_default();
+        let line = before.rsplit('\n').next().unwrap_or_default();
+        let key = line.trim_end().strip_suffix('=').map(|left| {
+            let left = left.trim_end();
+            let start = left.rfind([' ', ',', '{', '\t']).map_or(0, |at| at + 1);
+            left.get(start..).unwrap_or_default()
+        });
+        ProfileError {
+            file: self.file.to_owned(),
+            line: self.line_of(start),
+            key: key.unwrap_or_default().to_owned(),
+            problem: Box::new(Problem::Syntax(error.message().replace('\n', ", "))),
+        }
+    }
+
+    fn name(&self, name: &Spanned<String>, key: &str) -> Result<(), ProfileError> {
+        let text = name.as_ref();
+        let fits = text.starts_with(|first: char| first.is_ascii_lowercase())
+            && text
+                .chars()
+                .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        if fits {
+            return Ok(());
+        }
+        Err(self.error(name.span(), key, Problem::Name(text.clone())))
+    }
+
+    fn bounded(
+        &self,
+        found: Option<&Spanned<u16>>,
+        key: &str,
+        most: u16,
+    ) -> Result<u16, ProfileError> {
+        match found {
+            None => Ok(most),
+            Some(number) if (1..=most).contains(number.as_ref()) => Ok(*number.as_ref()),
+            Some(number) => Err(self.value(number, key, format!("1 to {most}"))),
+        }
+    }
+
+    fn duration(
+        &self,
+        found: Option<&Spanned<String>>,
+        key: &str,
+        default: Duration,
+    ) -> Result<Duration, ProfileError> {
+        let Some(text) = found else {
+            return Ok(default);
+        };
+        humantime::parse_duration(text.as_ref())
+            .map_err(|_| self.value(text, key, "a duration with its unit, such as \"500ms\""))
+    }
+}
+
+fn line(source: &Source<'_>, table: &LineTable) -> Result<LineSettings, ProfileError> {
+    let default = LineSettings::default();
+    let baud = match &table.baud {
+        Some(baud) if *baud.as_ref() == 0 => {
+            return Err(source.value(baud, "line.baud", "above 0"));
+        }
+        Some(baud) => *baud.as_ref(),
+        None => default.baud,
+    };
+    let parity = match &table.parity {
+        None => default.parity,
+        Some(text) => match text.as_ref().as_str() {
+            "none" => Parity::None,
+            "even" => Parity::Even,
+            "odd" => Parity::Odd,
+            _ => return Err(source.value(text, "line.parity", "none, even or odd")),
+        },
+    };
+    let stop_bits = match &table.stop_bits {
+        None => default.stop_bits,
+        Some(bits) => match bits.as_ref() {
+            1 => StopBits::One,
+            2 => StopBits::Two,
+            _ => return Err(source.value(bits, "line.stop_bits", "1 or 2")),
+        },
+    };
+    Ok(LineSettings {
+        baud,
+        parity,
+        stop_bits,
+    })
+}
+
+fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileError> {
+    let default = Limits::default();
+    let units = match &table.highest_unit {
+        None => default.units,
+        Some(unit) => match unit.as_ref() {
+            247 => UnitRange::Standard,
+            255 => UnitRange::Extended,
+            _ => return Err(source.value(unit, "limits.highest_unit", "247 or 255")),
+        },
+    };
+    let functions: Vec<FunctionCode> = match &table.functions {
+        None => default.functions,
+        Some(codes) => codes
+            .iter()
+            .map(|code| function(source, code, "limits.functions"))
+            .collect::<Result<_, _>>()?,
+    };
+    let mut broadcast_functions = Vec::new();
+    for code in &table.broadcast_functions {
+        let key = "limits.broadcast_functions";
+        let function = function(source, code, key)?;
+        if !functions.contains(&function) {
+            return Err(source.value(code, key, "one of limits.functions"));
+        }
+        broadcast_functions.push(function);
+    }
+    let table_registers = table
+        .table_registers
+        .as_ref()
+        .map(|size| source.bounded(Some(size), "limits.table_registers", 0x8000))
+        .transpose()?;
+    Ok(Limits {
+        units,
+        functions,
+        interchangeable_reads: table.interchangeable_reads,
+        broadcast_functions,
+        read_registers: source.bounded(
+            table.read_registers.as_ref(),
+            "limits.read_registers",
+            RegisterRange::MOST,
+        )?,
+        write_registers: source.bounded(
+            table.write_registers.as_ref(),
+            "limits.write_registers",
+            RegisterValues::MOST,
+        )?,
+        read_holes: table.read_holes,
+        table_registers,
+        typical_answer: source.duration(
+            table.typical_answer.as_ref(),
+            "limits.typical_answer",
+            default.typical_answer,
+        )?,
+        longest_answer: source.duration(
+            table.longest_answer.as_ref(),
+            "limits.longest_answer",
+            default.longest_answer,
+        )?,
+        pause: source.duration(table.pause.as_ref(), "limits.pause", default.pause)?,
+    })
+}
+
+fn function(
+    source: &Source<'_>,
+    code: &Spanned<u8>,
+    key: &str,
+) -> Result<FunctionCode, ProfileError> {
+    match FunctionCode::from(*code.as_ref()) {
+        FunctionCode::Other(_) => Err(source.value(code, key, "3, 4, 5, 6, 7, 8 or 16")),
+        known => Ok(known),
+    }
+}
+
+/// All points by address, each name once, no two on the same registers.
+fn points(
+    source: &Source<'_>,
+    table: &ProfileFile,
+    limits: &Limits,
+) -> Result<Vec<Point>, ProfileError> {
+    let mut lines: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut points: Vec<(Point, Range<usize>)> = Vec::with_capacity(table.points.len());
+    for row in &table.points {
+        let name = row.name.as_ref().as_str();
+        let point = point::point(source, row, &table.labels, limits)?;
+        let line = source.line_of(row.name.span().start);
+        if let Some(first) = lines.insert(name, line) {
+            let problem = Problem::DuplicateName { first };
+            return Err(source.error(row.name.span(), format!("{name}.name"), problem));
+        }
+        points.push((point, row.address.span()));
+    }
+    points.sort_by_key(|(point, _)| (point.range, point.alone));
+    overlaps(source, &points)?;
+    Ok(points.into_iter().map(|(point, _)| point).collect())
+}
+
+/// Two points on one register are a slip of the pen, unless one of them is read alone (the meter
+/// then answers such a request with something else) or different functions read them.
+fn overlaps(source: &Source<'_>, points: &[(Point, Range<usize>)]) -> Result<(), ProfileError> {
+    // The point that reaches furthest so far, a function each.
+    let mut furthest: Vec<&(Point, Range<usize>)> = Vec::new();
+    for entry in points.iter().filter(|(point, _)| !point.alone) {
+        let (point, span) = entry;
+        let before = furthest
+            .iter()
+            .position(|(other, _)| other.function == point.function);
+        let Some(at) = before else {
+            furthest.push(entry);
+            continue;
+        };
+        let (other, other_span) = furthest[at];
+        if u32::from(point.range.start().get()) < other.range.end() {
+            let problem = Problem::Overlap {
+                range: point.range.to_string(),
+                other: other.name.clone(),
+                line: source.line_of(other_span.start),
+            };
+            return Err(source.error(span.clone(), format!("{}.address", point.name), problem));
+        }
+        furthest[at] = entry;
+    }
+    Ok(())
+}
+
+fn groups(
+    source: &Source<'_>,
+    table: &BTreeMap<Spanned<String>, Vec<Spanned<String>>>,
+    points: &[Point],
+) -> Result<Vec<Group>, ProfileError> {
+    let mut groups = Vec::with_capacity(table.len());
+    for (name, patterns) in table {
+        let key = format!("groups.{}", name.as_ref());
+        source.name(name, &key)?;
+        let mut members: Vec<usize> = Vec::new();
+        for pattern in patterns {
+            let glob = WildMatch::new(pattern.as_ref());
+            let matches = points.iter().enumerate();
+            let mut found = false;
+            for (index, _) in matches.filter(|(_, point)| glob.matches(&point.name)) {
+                found = true;
+                if !members.contains(&index) {
+                    members.push(index);
+                }
+            }
+            if !found {
+                let problem = Problem::Unknown {
+                    what: "point",
+                    found: pattern.as_ref().clone(),
+                };
+                return Err(source.error(pattern.span(), key, problem));
+            }
+        }
+        groups.push(Group {
+            name: name.as_ref().clone(),
+            members,
+        });
+    }
+    Ok(groups)
+}
+
+fn identification(
+    source: &Source<'_>,
+    table: IdentificationTable,
+    points: &[Point],
+) -> Result<Identification, ProfileError> {
+    let name = table.point.as_ref();
+    if !points.iter().any(|point| point.name == *name) {
+        let problem = Problem::Unknown {
+            what: "point",
+            found: name.clone(),
+        };
+        return Err(source.error(table.point.span(), "identification.point", problem));
+    }
+    Ok(Identification {
+        point: table.point.into_inner(),
+        codes: table.codes,
+    })
+}

@@ -1,0 +1,273 @@
+//! One point of the file, checked.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use rust_decimal::Decimal;
+use toml::Spanned;
+
+use super::Source;
+use crate::codec::value::RegisterType;
+use crate::codec::{FunctionCode, ReadFunction, RegisterRange};
+use crate::profile::error::{Problem, ProfileError};
+use crate::profile::format::{LabelTable, LabelsKey, NoValueTable, Number, PointTable};
+use crate::profile::model::Limits;
+use crate::profile::point::{Access, Labels, Marker, NoValue, Point};
+use crate::profile::value::Missing;
+
+/// Checks one point against itself and the meter's limits.
+pub(super) fn point(
+    source: &Source<'_>,
+    row: &PointTable,
+    shared: &BTreeMap<String, Spanned<LabelTable>>,
+    limits: &Limits,
+) -> Result<Point, ProfileError> {
+    let name = row.name.as_ref().clone();
+    source.name(&row.name, "points.name")?;
+    let key = |key: &str| format!("{name}.{key}");
+    let kind: RegisterType = parsed(source, &row.kind, key("type"))?;
+    let order = match &row.order {
+        Some(order) => parsed(source, order, key("order"))?,
+        None => crate::codec::value::ByteOrder::default(),
+    };
+    let range = range(source, row, kind, limits, &key)?;
+    let scale = match &row.scale {
+        None => Decimal::ONE,
+        Some(scale) => scaled(source, scale, kind, &key("scale"))?,
+    };
+    let labels = match &row.labels {
+        None => Labels::None,
+        Some(labels) => named(source, labels, kind, shared, &key("labels"))?,
+    };
+    if !matches!(labels, Labels::None) && scale != Decimal::ONE {
+        let at = row.scale.as_ref().map_or(row.name.span(), Spanned::span);
+        let problem = Problem::Conflict("a point with labels has no scale");
+        return Err(source.error(at, key("scale"), problem));
+    }
+    Ok(Point {
+        about: row.about.clone(),
+        range,
+        kind,
+        order,
+        scale,
+        unit: row.unit.clone(),
+        access: access(source, row.access.as_ref(), &key("access"))?,
+        limits: row
+            .range
+            .as_ref()
+            .map(|range| writable(source, range, kind, &key("range")))
+            .transpose()?,
+        labels,
+        no_value: row
+            .no_value
+            .as_ref()
+            .map(|marker| no_value(source, marker, kind, &key("no_value")))
+            .transpose()?,
+        alone: row.alone,
+        function: row
+            .function
+            .as_ref()
+            .map(|code| read_function(source, code, limits, &key("function")))
+            .transpose()?,
+        verified: row.verified,
+        page: row.page.clone(),
+        name,
+    })
+}
+
+fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
+    source: &Source<'_>,
+    text: &Spanned<String>,
+    key: String,
+) -> Result<T, ProfileError> {
+    text.as_ref()
+        .parse()
+        .map_err(|error: T::Err| source.error(text.span(), key, Problem::Syntax(error.to_string())))
+}
+
+fn range(
+    source: &Source<'_>,
+    row: &PointTable,
+    kind: RegisterType,
+    limits: &Limits,
+    key: &impl Fn(&str) -> String,
+) -> Result<RegisterRange, ProfileError> {
+    let (start, count) = (*row.address.as_ref(), kind.registers());
+    let past_end = |end: String| {
+        let problem = Problem::PastEnd { start, count, end };
+        source.error(row.address.span(), key("address"), problem)
+    };
+    if count > limits.read_registers {
+        let problem = Problem::TooWide {
+            count,
+            most: limits.read_registers,
+        };
+        return Err(source.error(row.kind.span(), key("type"), problem));
+    }
+    if let Some(size) = limits.table_registers
+        && start / size != start.saturating_add(count - 1) / size
+    {
+        return Err(past_end(format!("the end of its table of {size}")));
+    }
+    RegisterRange::new(start, count).map_err(|_| past_end("0xFFFF, the last address".to_owned()))
+}
+
+fn scaled(
+    source: &Source<'_>,
+    scale: &Spanned<Number>,
+    kind: RegisterType,
+    key: &str,
+) -> Result<Decimal, ProfileError> {
+    if !kind.is_number() {
+        let problem = Problem::Conflict("only a number has a scale");
+        return Err(source.error(scale.span(), key, problem));
+    }
+    let exact = match scale.as_ref() {
+        Number::Integer(number) => Some(Decimal::from(*number)),
+        // The shortest form that reads back the same is what was written.
+        Number::Float(number) => number.to_string().parse().ok(),
+    };
+    exact
+        .filter(|scale| !scale.is_zero())
+        .ok_or_else(|| source.value(scale, key, "a decimal number other than 0"))
+}
+
+fn access(
+    source: &Source<'_>,
+    access: Option<&Spanned<String>>,
+    key: &str,
+) -> Result<Access, ProfileError> {
+    let Some(text) = access else {
+        return Ok(Access::Read);
+    };
+    match text.as_ref().as_str() {
+        "read" => Ok(Access::Read),
+        "write" => Ok(Access::Write),
+        "read-write" => Ok(Access::ReadWrite),
+        _ => Err(source.value(text, key, "read, write or read-write")),
+    }
+}
+
+fn writable(
+    source: &Source<'_>,
+    range: &Spanned<(i64, i64)>,
+    kind: RegisterType,
+    key: &str,
+) -> Result<(i128, i128), ProfileError> {
+    let (lowest, highest) = (i128::from(range.as_ref().0), i128::from(range.as_ref().1));
+    match kind.bounds() {
+        Some((least, most)) if least <= lowest && lowest <= highest && highest <= most => {
+            Ok((lowest, highest))
+        }
+        Some((least, most)) => Err(source.value(
+            range,
+            key,
+            format!("[lowest, highest] within {least} to {most}, what {kind} holds"),
+        )),
+        None => {
+            let problem = Problem::Conflict("only an integer has a range");
+            Err(source.error(range.span(), key, problem))
+        }
+    }
+}
+
+fn read_function(
+    source: &Source<'_>,
+    code: &Spanned<u8>,
+    limits: &Limits,
+    key: &str,
+) -> Result<ReadFunction, ProfileError> {
+    let function = match code.as_ref() {
+        3 => ReadFunction::HoldingRegisters,
+        4 => ReadFunction::InputRegisters,
+        _ => return Err(source.value(code, key, "3 or 4")),
+    };
+    if limits.functions.contains(&FunctionCode::from(function)) {
+        return Ok(function);
+    }
+    Err(source.value(code, key, "one of limits.functions"))
+}
+
+fn no_value(
+    source: &Source<'_>,
+    table: &Spanned<NoValueTable>,
+    kind: RegisterType,
+    key: &str,
+) -> Result<NoValue, ProfileError> {
+    let conflict = |what| Err(source.error(table.span(), key, Problem::Conflict(what)));
+    let marker = match (table.as_ref().high_word, table.as_ref().raw) {
+        (Some(word), None) => Marker::HighWord(word),
+        (None, Some(raw)) if kind.bounds().is_some() => Marker::Raw(i128::from(raw)),
+        (None, Some(_)) => return conflict("only an integer has a raw marker; use high_word"),
+        _ => return conflict("give either high_word or raw"),
+    };
+    let missing = match table.as_ref().means.as_str() {
+        "overflow" => Missing::Overflow,
+        "absent" => Missing::Absent,
+        _ => return conflict("means is \"overflow\" or \"absent\""),
+    };
+    Ok(NoValue { marker, missing })
+}
+
+fn named(
+    source: &Source<'_>,
+    labels: &Spanned<LabelsKey>,
+    kind: RegisterType,
+    shared: &BTreeMap<String, Spanned<LabelTable>>,
+    key: &str,
+) -> Result<Labels, ProfileError> {
+    let (table, at) = match labels.as_ref() {
+        LabelsKey::Own(table) => (table, labels.span()),
+        LabelsKey::Shared(name) => {
+            let Some(table) = shared.get(name) else {
+                let problem = Problem::Unknown {
+                    what: "table in [labels]",
+                    found: name.clone(),
+                };
+                return Err(source.error(labels.span(), key, problem));
+            };
+            (table.as_ref(), table.span())
+        }
+    };
+    let names = label_names(source, table, &at, key)?;
+    match kind {
+        RegisterType::Bits => Ok(Labels::Bits(names)),
+        RegisterType::U16 | RegisterType::Hex => Ok(Labels::Codes(names)),
+        _ => {
+            let problem = Problem::Conflict("only u16, hex and bits have labels");
+            Err(source.error(labels.span(), key, problem))
+        }
+    }
+}
+
+/// Labels by number. `1` and `0x1` are one number, so a table can clash with itself.
+fn label_names(
+    source: &Source<'_>,
+    table: &LabelTable,
+    at: &Range<usize>,
+    key: &str,
+) -> Result<BTreeMap<u16, String>, ProfileError> {
+    let mut names: BTreeMap<u16, String> = BTreeMap::new();
+    for (code, name) in table {
+        let number = match code.strip_prefix("0x") {
+            Some(hex) => u16::from_str_radix(hex, 16),
+            None => code.parse(),
+        };
+        let Ok(number) = number else {
+            let problem = Problem::Value {
+                found: format!("code '{code}'"),
+                expected: "0 to 65535, or 0x0 to 0xFFFF".to_owned(),
+            };
+            return Err(source.error(at.clone(), key, problem));
+        };
+        if let Some(first) = names.insert(number, name.clone()) {
+            let problem = Problem::LabelClash {
+                code: code.clone(),
+                first,
+                second: name.clone(),
+            };
+            return Err(source.error(at.clone(), key, problem));
+        }
+    }
+    Ok(names)
+}

@@ -1,0 +1,25 @@
+//! What a meter is: its points, scales, limits and rules, and how to read them cheaply.
+//!
+//! * [`model`] and [`point`]: the checked form that everything else works with.
+//! * [`format`](mod@format) and [`load`]: the TOML file and its strict loader.
+//! * [`builtin`] and [`find`]: the meters inside the program, and where a name or a path leads.
+//! * [`selector`]: what a person types to choose points or raw registers.
+//! * [`plan`]: which requests fetch a set of points in the least time on this line.
+//! * [`value`]: what a point's registers mean.
+
+pub mod builtin;
+pub mod error;
+pub mod find;
+pub mod format;
+pub mod load;
+pub mod model;
+pub mod plan;
+pub mod point;
+pub mod selector;
+pub mod value;
+
+pub use error::ProfileError;
+pub use model::{Limits, Profile};
+
+pub use point::Point;
+pub use value::{Missing, Value};

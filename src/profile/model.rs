@@ -1,0 +1,132 @@
+//! A meter, checked and ready to work with.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::point::Point;
+use crate::codec::{FunctionCode, ReadFunction, RegisterRange, RegisterValues, UnitRange};
+use crate::transport::LineSettings;
+
+/// One meter: what it is, how it is spoken to, and its points.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Profile {
+    /// Short name, as typed after `--meter`.
+    pub name: String,
+    /// Maker and model.
+    pub title: String,
+    /// The manual that the pages are pages of.
+    pub manual: String,
+    /// The line setting the meter leaves the factory with.
+    pub line: LineSettings,
+    /// What may be asked of it, and how fast.
+    pub limits: Limits,
+    /// How to tell that a unit is one of these.
+    pub identification: Option<Identification>,
+    /// Named sets of points.
+    pub groups: Vec<Group>,
+    /// All points, by address.
+    pub points: Vec<Point>,
+}
+
+/// What may be asked of a meter, and how fast.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Limits {
+    /// The unit numbers it can have.
+    pub units: UnitRange,
+    /// The functions it answers.
+    pub functions: Vec<FunctionCode>,
+    /// Whether functions 03 and 04 read the same registers.
+    pub interchangeable_reads: bool,
+    /// The functions it obeys on address 0.
+    pub broadcast_functions: Vec<FunctionCode>,
+    /// The most registers in one read, 1 to 125.
+    pub read_registers: u16,
+    /// The most registers in one write, 1 to 123.
+    pub write_registers: u16,
+    /// Whether a read may cover registers that no point names.
+    pub read_holes: bool,
+    /// A read must not cross a multiple of this many registers.
+    pub table_registers: Option<u16>,
+    /// How long it usually takes to answer, for planning.
+    pub typical_answer: Duration,
+    /// How long it may take before its answer begins.
+    pub longest_answer: Duration,
+    /// The pause it wants before each request, where t3.5 is not enough.
+    pub pause: Duration,
+}
+
+impl Default for Limits {
+    /// What the standard allows a meter of which nothing is known.
+    fn default() -> Self {
+        Self {
+            units: UnitRange::Standard,
+            functions: vec![
+                FunctionCode::ReadHoldingRegisters,
+                FunctionCode::ReadInputRegisters,
+            ],
+            interchangeable_reads: false,
+            broadcast_functions: Vec::new(),
+            read_registers: RegisterRange::MOST,
+            write_registers: RegisterValues::MOST,
+            read_holes: false,
+            table_registers: None,
+            typical_answer: Duration::ZERO,
+            longest_answer: Self::LONGEST_ANSWER,
+            pause: Duration::ZERO,
+        }
+    }
+}
+
+impl Limits {
+    /// The usual time-out at 9600 baud: "1 s to several seconds" (SL 2.4.1).
+    pub const LONGEST_ANSWER: Duration = Duration::from_secs(1);
+
+    /// The function to read with: 03 where the meter has it, else 04.
+    pub fn read_function(&self) -> ReadFunction {
+        if self.functions.contains(&FunctionCode::ReadHoldingRegisters) {
+            ReadFunction::HoldingRegisters
+        } else {
+            ReadFunction::InputRegisters
+        }
+    }
+}
+
+/// How to tell that a unit is this meter: a point that holds one of a few codes.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identification {
+    /// The name of the point.
+    pub point: String,
+    /// The raw codes it can hold.
+    pub codes: Vec<u16>,
+}
+
+/// A named set of points.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Group {
+    /// Its name, typed as `@name`.
+    pub name: String,
+    /// Indices into [`Profile::points`], in the order they are shown.
+    pub members: Vec<usize>,
+}
+
+impl Profile {
+    /// The group that is read when none is named.
+    pub const DEFAULT_GROUP: &str = "default";
+
+    /// A point by its name.
+    pub fn point(&self, name: &str) -> Option<&Point> {
+        self.points.iter().find(|point| point.name == name)
+    }
+
+    /// The points of a group, in its order.
+    pub fn group(&self, name: &str) -> Option<impl Iterator<Item = &Point>> {
+        let group = self.groups.iter().find(|group| group.name == name)?;
+        Some(
+            group
+                .members
+                .iter()
+                .filter_map(|index| self.points.get(*index)),
+        )
+    }
+}

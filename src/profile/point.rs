@@ -1,0 +1,222 @@
+//! A point: one quantity of a meter, where it lies and what it means.
+
+use std::collections::BTreeMap;
+
+use rust_decimal::Decimal;
+use rust_decimal::prelude::ToPrimitive;
+use serde::{Deserialize, Serialize};
+
+use super::value::{Missing, Value};
+use crate::codec::value::{self, ByteOrder, Raw, RegisterType, ValueError};
+use crate::codec::{ReadFunction, RegisterRange};
+
+/// One quantity of a meter.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Point {
+    /// Its name: lower case, digits and `_`; or a raw register's address in hex.
+    pub name: String,
+    /// What it is, in a few words; empty for raw registers.
+    pub about: String,
+    /// The registers it lies in.
+    pub range: RegisterRange,
+    /// What they hold.
+    pub kind: RegisterType,
+    /// How the bytes lie in them.
+    pub order: ByteOrder,
+    /// What the raw number is multiplied with.
+    #[serde(with = "rust_decimal::serde::str")]
+    pub scale: Decimal,
+    /// The unit of the scaled number: `A`, `kWh`.
+    pub unit: Option<String>,
+    /// Whether it can be read and written.
+    pub access: Access,
+    /// Lowest and highest raw integer that may be written.
+    pub limits: Option<(i128, i128)>,
+    /// Names of codes or of bits.
+    pub labels: Labels,
+    /// What the meter stores in place of a value it does not have.
+    pub no_value: Option<NoValue>,
+    /// It must be read by a request of its own.
+    pub alone: bool,
+    /// The one function it can be read with; `None` leaves the choice to the meter's limits.
+    pub function: Option<ReadFunction>,
+    /// Its address was read in the maker's manual, not worked out or taken from a driver.
+    pub verified: bool,
+    /// Page of the manual.
+    pub page: String,
+}
+
+/// What can be done with a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Access {
+    /// Read only.
+    #[default]
+    Read,
+    /// Write only.
+    Write,
+    /// Both.
+    ReadWrite,
+}
+
+impl Access {
+    /// Whether it can be read.
+    pub const fn readable(self) -> bool {
+        !matches!(self, Self::Write)
+    }
+}
+
+/// Names for numbers or bits.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Labels {
+    /// None: the number itself is shown.
+    #[default]
+    None,
+    /// A name a code.
+    Codes(BTreeMap<u16, String>),
+    /// A name a mask, lowest bit first.
+    Bits(BTreeMap<u16, String>),
+}
+
+/// The marker a meter stores in place of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NoValue {
+    /// What to look for.
+    pub marker: Marker,
+    /// What it means.
+    pub missing: Missing,
+}
+
+/// How a marker is recognised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Marker {
+    /// The most significant word has this value, whatever the others hold.
+    HighWord(u16),
+    /// The whole raw integer has this value.
+    Raw(i128),
+}
+
+impl Point {
+    /// A raw register as a point: read only, no labels, nothing known about it.
+    pub fn raw(range: RegisterRange, kind: RegisterType, order: ByteOrder) -> Self {
+        Self {
+            name: range.start().to_string(),
+            about: String::new(),
+            range,
+            kind,
+            order,
+            scale: Decimal::ONE,
+            unit: None,
+            access: Access::Read,
+            limits: None,
+            labels: Labels::None,
+            no_value: None,
+            alone: false,
+            function: None,
+            verified: true,
+            page: String::new(),
+        }
+    }
+
+    /// What the registers of this point mean.
+    ///
+    /// # Errors
+    /// [`Missing`] when the meter marks the value as not there, or the registers cannot hold one.
+    pub fn interpret(&self, registers: &[u16]) -> Result<Value, Missing> {
+        let raw = value::decode(self.kind, self.order, registers).map_err(|error| match error {
+            ValueError::Unset => Missing::Absent,
+            ValueError::Length { .. } | ValueError::Impossible { .. } => Missing::Mismatch,
+        });
+        // The marker comes first: what it stands for need not be a value of the type.
+        if let Some(no_value) = self.no_value
+            && self.is_marked(no_value.marker, registers, raw.as_ref().ok())
+        {
+            return Err(no_value.missing);
+        }
+        match raw? {
+            Raw::Integer(number) => self.integer(number),
+            Raw::Single(number) => self.single(number),
+            Raw::Double(number) => self.double(number),
+            Raw::Word(word) => Ok(Value::Text(self.word(word))),
+            Raw::Text(text) => Ok(Value::Text(text)),
+            Raw::Time(time) => Ok(Value::Text(format!("{time:.3}"))),
+            Raw::Date(date) => Ok(Value::Text(date.to_string())),
+        }
+    }
+
+    fn is_marked(&self, marker: Marker, registers: &[u16], raw: Option<&Raw>) -> bool {
+        match marker {
+            Marker::HighWord(word) => self.order.high_word(registers) == Some(word),
+            Marker::Raw(number) => match raw {
+                Some(Raw::Integer(found)) => *found == number,
+                Some(Raw::Word(found)) => i128::from(*found) == number,
+                _ => false,
+            },
+        }
+    }
+
+    fn integer(&self, number: i128) -> Result<Value, Missing> {
+        if let (Labels::Codes(codes), Ok(code)) = (&self.labels, u16::try_from(number))
+            && let Some(label) = codes.get(&code)
+        {
+            return Ok(Value::Text(label.clone()));
+        }
+        Decimal::try_from_i128_with_scale(number, 0)
+            .ok()
+            .and_then(|number| number.checked_mul(self.scale))
+            .map(Value::Decimal)
+            .ok_or(Missing::Mismatch)
+    }
+
+    fn single(&self, number: f32) -> Result<Value, Missing> {
+        finite(f64::from(number))?;
+        if self.scale == Decimal::ONE {
+            return Ok(Value::Single(number));
+        }
+        // Scaled from the digits the single prints, not from the ones its widening adds.
+        let printed = number.to_string().parse().unwrap_or(f64::from(number));
+        self.double(printed)
+    }
+
+    fn double(&self, number: f64) -> Result<Value, Missing> {
+        let scaled = number * self.scale.to_f64().unwrap_or(1.0);
+        finite(scaled).map(Value::Double)
+    }
+
+    fn word(&self, word: u16) -> String {
+        match (&self.labels, self.kind) {
+            (Labels::Bits(names), _) => bit_names(names, word),
+            (Labels::Codes(names), _) if names.contains_key(&word) => names[&word].clone(),
+            (_, RegisterType::Bits) => format!("0b{word:016b}"),
+            _ => format!("0x{word:04X}"),
+        }
+    }
+}
+
+const fn finite(number: f64) -> Result<f64, Missing> {
+    if number.is_nan() {
+        Err(Missing::Absent)
+    } else if number.is_infinite() {
+        Err(Missing::Overflow)
+    } else {
+        Ok(number)
+    }
+}
+
+/// Names of the bits that are set, `|` between them; bits without a name as one number in hex.
+fn bit_names(names: &BTreeMap<u16, String>, word: u16) -> String {
+    let mut shown: Vec<String> = Vec::new();
+    let mut unknown = word;
+    for (mask, name) in names {
+        if word & mask == *mask {
+            shown.push(name.clone());
+            unknown &= !mask;
+        }
+    }
+    if unknown != 0 {
+        shown.push(format!("0x{unknown:04X}"));
+    }
+    if shown.is_empty() {
+        return "none".to_owned();
+    }
+    shown.join("|")
+}

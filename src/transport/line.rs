@@ -1,0 +1,137 @@
+//! A transport with the manners of a Modbus line.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use jiff::Timestamp;
+
+use super::{Clock, Timing, Transport, TransportError};
+
+/// The most bytes taken from the transport at once.
+const CHUNK: usize = 512;
+
+/// A line: a transport, its pace, and when it was last heard.
+pub struct Line {
+    transport: Box<dyn Transport>,
+    clock: Arc<dyn Clock>,
+    timing: Timing,
+    /// End of the last byte in either direction; for our own bytes an estimate, since neither a
+    /// write nor a drain tells when the wire went quiet.
+    quiet_since: Duration,
+}
+
+/// How waiting for silence ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quiet {
+    /// The line is silent; this many stray bytes were thrown away.
+    Reached {
+        /// Bytes thrown away.
+        discarded: usize,
+    },
+    /// The line was never silent long enough.
+    Never {
+        /// Bytes thrown away.
+        discarded: usize,
+    },
+}
+
+impl Line {
+    /// Takes over an open transport. What arrived before is thrown away, and the line counts as
+    /// busy from this moment: the first frame waits until it has been seen silent.
+    ///
+    /// # Errors
+    /// [`TransportError`] when the port is gone already.
+    pub fn new(
+        mut transport: Box<dyn Transport>,
+        clock: Arc<dyn Clock>,
+        timing: Timing,
+    ) -> Result<Self, TransportError> {
+        transport.discard_input()?;
+        let quiet_since = clock.now();
+        Ok(Self {
+            transport,
+            clock,
+            timing,
+            quiet_since,
+        })
+    }
+
+    /// Monotonic time.
+    pub fn now(&self) -> Duration {
+        self.clock.now()
+    }
+
+    /// The time of day.
+    pub fn today(&self) -> Timestamp {
+        self.clock.today()
+    }
+
+    /// The pace of this line.
+    pub const fn timing(&self) -> Timing {
+        self.timing
+    }
+
+    /// Waits until the line has been silent for t3.5, or for `pause` where that is longer, and
+    /// throws away what arrives meanwhile. Gives up when the line is still talking after `limit`.
+    ///
+    /// # Errors
+    /// [`TransportError`] when the port is gone.
+    pub fn wait_quiet(
+        &mut self,
+        pause: Duration,
+        limit: Duration,
+    ) -> Result<Quiet, TransportError> {
+        let silence = self.timing.silence().max(pause);
+        let give_up = self.now() + silence + limit;
+        let mut discarded = 0;
+        let mut chunk = [0; CHUNK];
+        loop {
+            let left = (self.quiet_since + silence).saturating_sub(self.now());
+            match self.receive(&mut chunk, left)? {
+                0 if self.now() >= self.quiet_since + silence => {
+                    return Ok(Quiet::Reached { discarded });
+                }
+                0 => {}
+                count => discarded += count,
+            }
+            if self.now() >= give_up {
+                return Ok(Quiet::Never { discarded });
+            }
+        }
+    }
+
+    /// Sends a frame in one write and returns when its last byte will have left the wire. The
+    /// caller has waited for silence.
+    ///
+    /// # Errors
+    /// [`TransportError`] when the port is gone.
+    pub fn send(&mut self, frame: &[u8]) -> Result<Duration, TransportError> {
+        let start = self.now();
+        self.transport.send(frame)?;
+        self.quiet_since = start + self.timing.transfer_time(frame.len());
+        Ok(self.quiet_since)
+    }
+
+    /// Waits for bytes, at most `wait`, appends them to `into` and returns how many came.
+    ///
+    /// # Errors
+    /// [`TransportError`] when the port is gone.
+    pub fn receive_into(
+        &mut self,
+        into: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, TransportError> {
+        let mut chunk = [0; CHUNK];
+        let count = self.receive(&mut chunk, wait)?;
+        into.extend_from_slice(chunk.get(..count).unwrap_or_default());
+        Ok(count)
+    }
+
+    fn receive(&mut self, chunk: &mut [u8], wait: Duration) -> Result<usize, TransportError> {
+        let count = self.transport.receive(chunk, wait)?;
+        if count > 0 {
+            self.quiet_since = self.quiet_since.max(self.now());
+        }
+        Ok(count)
+    }
+}

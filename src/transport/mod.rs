@@ -1,0 +1,42 @@
+//! Moves bytes and keeps the line's time.
+//!
+//! A [`Transport`] is a medium: the [`serial`] port, or the simulated line in [`crate::sim`].
+//! [`traced`] wraps any of them and shows the bytes. [`line::Line`] adds what the standard asks of
+//! everybody on a wire: silence before each frame. [`clock`] is where time comes from, so that all
+//! of this runs on a fake one in tests.
+
+pub mod clock;
+pub mod error;
+pub mod line;
+pub mod serial;
+pub mod settings;
+pub mod traced;
+
+use std::time::Duration;
+
+pub use clock::{Clock, SystemClock};
+pub use error::{OpenError, TransportError};
+pub use line::Line;
+pub use settings::{LineSettings, Parity, StopBits, Timing};
+
+/// A medium that carries bytes both ways.
+pub trait Transport: Send {
+    /// Sends the whole frame in one write.
+    ///
+    /// # Errors
+    /// [`TransportError`] when the medium is gone.
+    fn send(&mut self, frame: &[u8]) -> Result<(), TransportError>;
+
+    /// Waits for bytes, at most `wait`, and returns how many came; 0 means none yet. It can return
+    /// 0 early, so callers look at the clock.
+    ///
+    /// # Errors
+    /// [`TransportError`] when the medium is gone.
+    fn receive(&mut self, into: &mut [u8], wait: Duration) -> Result<usize, TransportError>;
+
+    /// Throws away what has arrived and was not received yet.
+    ///
+    /// # Errors
+    /// [`TransportError`] when the medium is gone.
+    fn discard_input(&mut self) -> Result<(), TransportError>;
+}
