@@ -1,5 +1,6 @@
 //! Reads, writes and logs electricity meters over Modbus RTU.
 
+pub mod client;
 pub mod codec;
 pub mod profile;
 pub mod transport;

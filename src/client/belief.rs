@@ -1,0 +1,265 @@
+//! Whether bytes are the answer: the one place where that is decided.
+//!
+//! Pure: all bytes since the request went out come in, a verdict goes out, so any split of the
+//! same bytes gives the same result. Nothing is believed on its prefix alone.
+
+use crate::codec::length::{self, Direction};
+use crate::codec::rtu::{self, Frame};
+use crate::codec::{FunctionCode, Reply, Request, Response, Unit};
+
+/// What to make of our own bytes coming back, as they do where a two-wire adapter keeps its
+/// receiver on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Echo {
+    /// An echo is recognised and dropped. Where the answer repeats the request (functions 05, 06,
+    /// 08), one copy is the answer until the line has been seen to echo.
+    #[default]
+    Auto,
+    /// The line echoes: the first copy of the request is never the answer.
+    On,
+    /// The line does not echo.
+    Off,
+}
+
+/// What a request implies for its answer.
+#[derive(Debug)]
+pub struct Expectation<'a> {
+    unit: Unit,
+    request: &'a Request,
+    frame: &'a Frame,
+    /// The first copy of the own frame is an echo, not an answer.
+    drop_echo: bool,
+    /// Bytes of the normal answer, CRC included.
+    length: usize,
+}
+
+/// What the bytes so far amount to.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// This is the answer.
+    Answer(Reply),
+    /// Not yet.
+    Waiting(Evidence),
+}
+
+/// What was seen in place of an answer.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Evidence {
+    /// Copies of the own request.
+    pub echoes: usize,
+    /// Valid frames of other units.
+    pub others: usize,
+    /// Bytes that belong to nothing.
+    pub stray: usize,
+    /// The longest beginning of an answer at the end of the bytes: how much of it is there, and
+    /// how long it will be.
+    pub begun: Option<(usize, usize)>,
+    /// An answer that is whole but for its CRC.
+    pub damaged: bool,
+    /// A valid frame of the unit that is not the answer, in words.
+    pub mismatch: Option<String>,
+}
+
+impl<'a> Expectation<'a> {
+    /// What `request`, sent to `unit` as `frame`, implies. `seen` says that the line has echoed
+    /// before.
+    pub fn new(unit: Unit, request: &'a Request, frame: &'a Frame, echo: Echo, seen: bool) -> Self {
+        let drop_echo = match echo {
+            Echo::On => true,
+            Echo::Off => false,
+            Echo::Auto => seen || !is_mirrored(request),
+        };
+        Self {
+            unit,
+            request,
+            frame,
+            drop_echo,
+            length: answer_length(request),
+        }
+    }
+
+    /// Judges all bytes received since the request went out.
+    pub fn judge(&self, received: &[u8]) -> Verdict {
+        let mut evidence = Evidence::default();
+        let mut at = 0;
+        while let Some(rest) = received.get(at..).filter(|rest| !rest.is_empty()) {
+            if self.drop_echo && rest.starts_with(self.frame.as_bytes()) && !self.is_over(&evidence)
+            {
+                evidence.echoes += 1;
+                at += self.frame.as_bytes().len();
+                continue;
+            }
+            if let Some(frame) = self.candidate(rest) {
+                match rtu::decode_reply(frame) {
+                    // A short answer can be the start of our own echo, byte for byte; one byte
+                    // more tells.
+                    Ok(_) if self.could_be_echo(rest) => {
+                        evidence.begun = Some((rest.len(), self.frame.as_bytes().len()));
+                    }
+                    Ok((_, reply)) if self.is_answered_by(&reply) => return Verdict::Answer(reply),
+                    Ok(_) => {}
+                    Err(_) => evidence.damaged = true,
+                }
+            } else if self.begins(rest) {
+                let wanted = self.length_of(rest);
+                if evidence.begun.is_none() {
+                    evidence.begun = Some((rest.len(), wanted));
+                }
+            }
+            at += self.skip(rest, &mut evidence);
+        }
+        Verdict::Waiting(evidence)
+    }
+
+    /// An echo is dropped once where the answer looks the same, else as often as it comes.
+    fn is_over(&self, evidence: &Evidence) -> bool {
+        is_mirrored(self.request) && evidence.echoes > 0
+    }
+
+    /// Steps over a valid frame that is no answer, as a whole, or over one stray byte.
+    fn skip(&self, rest: &[u8], evidence: &mut Evidence) -> usize {
+        let whole = length::of_frame(rest, Direction::Response)
+            .and_then(|length| rtu::checked_window(rest, 0, length));
+        let Some(frame) = whole else {
+            evidence.stray += 1;
+            return 1;
+        };
+        if frame.first() == Some(&self.unit.get()) {
+            evidence.mismatch = Some(self.describe(frame));
+        } else {
+            evidence.others += 1;
+        }
+        frame.len()
+    }
+
+    /// The bytes that would be the whole answer, if they start like one and are all there.
+    fn candidate<'b>(&self, rest: &'b [u8]) -> Option<&'b [u8]> {
+        if !self.begins(rest) {
+            return None;
+        }
+        rest.get(..self.length_of(rest))
+    }
+
+    /// Whether the bytes, as far as they go, start like the answer: unit, function, byte count.
+    fn begins(&self, rest: &[u8]) -> bool {
+        let function = self.request.function();
+        let is = |index: usize, wanted: u8| rest.get(index).is_none_or(|byte| *byte == wanted);
+        if !is(0, self.unit.get()) {
+            return false;
+        }
+        if rest.get(1) == Some(&function.exception()) {
+            return true;
+        }
+        is(1, function.get()) && self.byte_count().is_none_or(|count| is(2, count))
+    }
+
+    /// How long the answer that starts like this is.
+    fn length_of(&self, rest: &[u8]) -> usize {
+        if rest.get(1) == Some(&self.request.function().exception()) {
+            length::EXCEPTION_BYTES
+        } else {
+            self.length
+        }
+    }
+
+    /// The byte count the answer must carry, where it carries one.
+    fn byte_count(&self) -> Option<u8> {
+        match self.request {
+            Request::Read { range, .. } => u8::try_from(2 * range.count()).ok(),
+            _ => None,
+        }
+    }
+
+    fn could_be_echo(&self, rest: &[u8]) -> bool {
+        let frame = self.frame.as_bytes();
+        self.drop_echo && rest.len() < frame.len() && frame.starts_with(rest)
+    }
+
+    fn is_answered_by(&self, reply: &Reply) -> bool {
+        match reply {
+            Reply::Exception { function, .. } => *function == self.request.function(),
+            Reply::Normal(response) => matches(self.request, response),
+        }
+    }
+
+    fn describe(&self, frame: &[u8]) -> String {
+        match rtu::decode_reply(frame) {
+            Err(error) => format!("a frame that {error}"),
+            Ok((_, Reply::Exception { function, code })) => {
+                format!("{code} to {function}")
+            }
+            Ok((_, Reply::Normal(Response::Registers { function, values })))
+                if FunctionCode::from(function) == self.request.function() =>
+            {
+                format!("{} registers", values.len())
+            }
+            Ok((_, Reply::Normal(_))) => frame.get(1).map_or_else(String::new, |code| {
+                format!("an answer to {}", FunctionCode::from(*code))
+            }),
+        }
+    }
+}
+
+impl Evidence {
+    /// Whether an answer has begun, so that it is worth waiting for its end.
+    pub const fn has_begun(&self) -> bool {
+        self.begun.is_some()
+    }
+}
+
+/// Whether the normal answer repeats the request byte for byte.
+const fn is_mirrored(request: &Request) -> bool {
+    use crate::codec::Write;
+    matches!(
+        request,
+        Request::ReturnQueryData(_) | Request::Write(Write::Coil { .. } | Write::Register { .. })
+    )
+}
+
+/// Bytes of the normal answer, CRC included.
+pub fn answer_length(request: &Request) -> usize {
+    let registers = match request {
+        Request::Read { range, .. } => usize::from(range.count()),
+        _ => 0,
+    };
+    match length::rule(request.function().get(), Direction::Response) {
+        Some(length::Rule::Fixed(bytes)) => bytes,
+        Some(length::Rule::Counted { rest, .. }) => rest + 2 * registers,
+        // Every function a request can have is in the table.
+        None => length::MOST_FRAME_BYTES,
+    }
+}
+
+/// Whether a response is what the request implies, field by field.
+fn matches(request: &Request, response: &Response) -> bool {
+    use crate::codec::Write;
+    match (request, response) {
+        (
+            Request::Read { function, range },
+            Response::Registers {
+                function: answered,
+                values,
+            },
+        ) => function == answered && values.len() == usize::from(range.count()),
+        (
+            Request::Write(Write::Coil { address, on }),
+            Response::Coil {
+                address: answered,
+                on: state,
+            },
+        ) => address == answered && on == state,
+        (
+            Request::Write(Write::Register { address, value }),
+            Response::Register {
+                address: answered,
+                value: stored,
+            },
+        ) => address == answered && value == stored,
+        (Request::Write(Write::Registers { start, values }), Response::RegistersWritten(range)) => {
+            range.start() == *start && range.count() == values.count()
+        }
+        (Request::ReadExceptionStatus, Response::ExceptionStatus(_)) => true,
+        (Request::ReturnQueryData(word), Response::QueryData(answered)) => word == answered,
+        _ => false,
+    }
+}

@@ -1,0 +1,284 @@
+//! Requests and answers over a line: silences, deadline, retries, and what may still come.
+
+use std::time::Duration;
+
+use jiff::Timestamp;
+use log::info;
+
+use super::belief::{self, Echo, Evidence, Expectation, Verdict};
+use super::failure::Failure;
+use crate::codec::rtu::{self, Frame};
+use crate::codec::{Reply, Request, Response, Unit};
+use crate::transport::Line;
+use crate::transport::line::Quiet;
+
+/// Allowance for adapters that hold bytes back: two of the 16 ms periods of a common USB chip.
+const ADAPTER_LATENCY: Duration = Duration::from_millis(32);
+
+/// A gap this long after a damaged answer means that nothing more comes: six of those periods.
+const GAP: Duration = Duration::from_millis(100);
+
+/// Unrecognised bytes are kept up to this many, the longest frame behind a longest frame of noise;
+/// older ones are let go, so that endless noise costs no memory.
+const MOST_RECEIVED: usize = 512;
+
+/// Fewer stray bytes than the shortest frame has are noise on an idle line, not a damaged answer.
+const SHORTEST_FRAME: usize = 4;
+
+/// How patient the client is with one meter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Patience {
+    /// How long an answer may take to begin; its transfer time comes on top.
+    pub timeout: Duration,
+    /// How many times a request is repeated when the line fails.
+    pub retries: u32,
+    /// Least time between the end of anything on the line and the next request; t3.5 is kept
+    /// anyway.
+    pub pause: Duration,
+}
+
+impl Default for Patience {
+    /// One second, two retries, no pause.
+    fn default() -> Self {
+        Self {
+            timeout: Duration::from_secs(1),
+            retries: 2,
+            pause: Duration::ZERO,
+        }
+    }
+}
+
+/// One request on its way.
+#[derive(Clone, Copy)]
+struct Asked<'a> {
+    unit: Unit,
+    request: &'a Request,
+    frame: &'a Frame,
+    patience: Patience,
+}
+
+impl<'a> Asked<'a> {
+    fn expectation(&self, echo: Echo, echoes: bool) -> Expectation<'a> {
+        Expectation::new(self.unit, self.request, self.frame, echo, echoes)
+    }
+}
+
+/// A Modbus client on one line.
+pub struct Client {
+    line: Line,
+    echo: Echo,
+    /// The line has echoed.
+    echoes: bool,
+    /// Whether anything was sent yet: the pause is one between requests.
+    sent: bool,
+    /// Answers that have not come and may still do so.
+    owed: Option<Owed>,
+}
+
+/// A request that was sent more often than it was answered.
+struct Owed {
+    unit: Unit,
+    request: Request,
+    frame: Frame,
+    answers: u32,
+    /// Until when they are waited for.
+    until: Duration,
+}
+
+impl Client {
+    /// Takes over a line.
+    pub const fn new(line: Line, echo: Echo) -> Self {
+        Self {
+            line,
+            echo,
+            echoes: false,
+            sent: false,
+            owed: None,
+        }
+    }
+
+    /// The time of day, from the line's clock.
+    pub fn today(&self) -> Timestamp {
+        self.line.today()
+    }
+
+    /// Sends a request that changes nothing and returns its answer, repeating it when the line
+    /// fails.
+    ///
+    /// # Errors
+    /// [`Failure`] of the last attempt. An exception is never repeated.
+    pub fn request(
+        &mut self,
+        unit: Unit,
+        request: &Request,
+        patience: Patience,
+    ) -> Result<Response, Failure> {
+        let frame = rtu::encode_request(unit, request);
+        let asked = Asked {
+            unit,
+            request,
+            frame: &frame,
+            patience,
+        };
+        self.settle_debts(&frame)?;
+        let mut retries = 1..=patience.retries;
+        loop {
+            match self.attempt(asked) {
+                Ok(Reply::Normal(response)) => return Ok(response),
+                Ok(Reply::Exception { code, .. }) => return Err(Failure::Exception(code)),
+                Err(failure) => {
+                    let retry = retries.next().filter(|_| failure.is_worth_a_retry());
+                    let Some(retry) = retry else {
+                        return Err(failure);
+                    };
+                    info!(
+                        "unit {unit}: {failure}; retry {retry} of {}",
+                        patience.retries
+                    );
+                }
+            }
+        }
+    }
+
+    fn attempt(&mut self, asked: Asked<'_>) -> Result<Reply, Failure> {
+        let Patience { timeout, pause, .. } = asked.patience;
+        let pause = if self.sent { pause } else { Duration::ZERO };
+        match self.line.wait_quiet(pause, timeout)? {
+            Quiet::Never { discarded } => return Err(Failure::NeverQuiet { discarded }),
+            Quiet::Reached { discarded: 0 } => {}
+            Quiet::Reached { discarded } => info!("{discarded} stray bytes thrown away"),
+        }
+        let sent = self.line.send(asked.frame.as_bytes())?;
+        self.sent = true;
+        self.owe(asked, sent);
+        self.listen(asked, sent)
+    }
+
+    /// Receives until the answer is there. It must begin within the time-out; one that has begun
+    /// gets its transfer time on top.
+    fn listen(&mut self, asked: Asked<'_>, sent: Duration) -> Result<Reply, Failure> {
+        let expectation = asked.expectation(self.echo, self.echoes);
+        let timeout = asked.patience.timeout;
+        let begin_by = sent + timeout;
+        let end_by = begin_by + self.transfer_time(asked.request) + ADAPTER_LATENCY;
+        let mut deadline = begin_by;
+        let mut received = Vec::new();
+        let mut evidence = Evidence::default();
+        loop {
+            let left = deadline.saturating_sub(self.line.now());
+            if left.is_zero() {
+                if evidence.damaged {
+                    self.answered();
+                }
+                return Err(failure(evidence, received.len(), timeout));
+            }
+            if self.line.receive_into(&mut received, left)? == 0 {
+                continue;
+            }
+            forget_oldest(&mut received);
+            match expectation.judge(&received) {
+                Verdict::Answer(reply) => {
+                    self.answered();
+                    let took = self.line.now().saturating_sub(sent).as_secs_f64() * 1000.0;
+                    info!("unit {}: answered in {took:.1} ms", asked.unit);
+                    return Ok(reply);
+                }
+                Verdict::Waiting(found) => evidence = found,
+            }
+            self.echoes |= evidence.echoes > 0;
+            deadline = if evidence.has_begun() {
+                end_by
+            } else if evidence.damaged {
+                begin_by.min(self.line.now() + GAP)
+            } else {
+                begin_by
+            };
+        }
+    }
+
+    /// One more answer is to be expected. Until when it is waited for: as long again as an answer
+    /// may take to begin, for a meter that is late is seldom later than that.
+    fn owe(&mut self, asked: Asked<'_>, sent: Duration) {
+        let before = self.owed.take().map_or(0, |owed| owed.answers);
+        self.owed = Some(Owed {
+            unit: asked.unit,
+            request: asked.request.clone(),
+            frame: asked.frame.clone(),
+            answers: before + 1,
+            until: sent + 2 * asked.patience.timeout + self.transfer_time(asked.request),
+        });
+    }
+
+    /// One answer has come.
+    fn answered(&mut self) {
+        self.owed = self.owed.take().and_then(|owed| {
+            let answers = owed.answers - 1;
+            (answers > 0).then_some(Owed { answers, ..owed })
+        });
+    }
+
+    /// Before a different request goes out, waits for the answers that earlier attempts may still
+    /// get, and throws them away. The same request may go out at once: a late answer to it is
+    /// right.
+    fn settle_debts(&mut self, next: &Frame) -> Result<(), Failure> {
+        let mut received = Vec::new();
+        while let Some(owed) = self.owed.as_ref().filter(|owed| owed.frame != *next) {
+            let left = owed.until.saturating_sub(self.line.now());
+            if left.is_zero() {
+                self.owed = None;
+                break;
+            }
+            self.line.receive_into(&mut received, left)?;
+            forget_oldest(&mut received);
+            let asked = Asked {
+                unit: owed.unit,
+                request: &owed.request,
+                frame: &owed.frame,
+                patience: Patience::default(),
+            };
+            let verdict = asked.expectation(self.echo, self.echoes).judge(&received);
+            if let Verdict::Answer(_) = verdict {
+                info!("unit {}: a late answer was thrown away", owed.unit);
+                received.clear();
+                self.answered();
+            }
+        }
+        Ok(())
+    }
+
+    /// How long the normal answer to a request takes on the wire.
+    fn transfer_time(&self, request: &Request) -> Duration {
+        let timing = self.line.timing();
+        timing.transfer_time(belief::answer_length(request))
+    }
+}
+
+/// Endless noise costs no memory.
+fn forget_oldest(received: &mut Vec<u8>) {
+    let oldest = received.len().saturating_sub(MOST_RECEIVED);
+    received.drain(..oldest);
+}
+
+/// What the evidence amounts to when the time is up: the most telling thing first.
+fn failure(evidence: Evidence, received: usize, timeout: Duration) -> Failure {
+    if let Some(found) = evidence.mismatch {
+        return Failure::Mismatch { found };
+    }
+    if evidence.damaged {
+        return Failure::Damaged { received };
+    }
+    if let Some((received, expected)) = evidence.begun {
+        return Failure::Truncated { received, expected };
+    }
+    if evidence.others == 0 && evidence.stray >= SHORTEST_FRAME {
+        return Failure::Damaged { received };
+    }
+    if evidence.echoes > 0 && evidence.others == 0 {
+        return Failure::OnlyEcho;
+    }
+    Failure::Silence {
+        timeout,
+        others: evidence.others,
+        stray: evidence.stray,
+    }
+}
