@@ -199,7 +199,8 @@ impl Client {
     /// One more answer is to be expected. Until when it is waited for: as long again as an answer
     /// may take to begin, for a meter that is late is seldom later than that.
     fn owe(&mut self, asked: Asked<'_>, sent: Duration) {
-        let before = self.owed.take().map_or(0, |owed| owed.answers);
+        let owed = self.owed.take().filter(|owed| owed.until > sent);
+        let before = owed.map_or(0, |owed| owed.answers);
         self.owed = Some(Owed {
             unit: asked.unit,
             request: asked.request.clone(),

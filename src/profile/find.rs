@@ -1,1 +1,112 @@
-//! x
+//! From what a person types after `--meter` to a profile: a file, one of the user's own, or one
+//! inside the program.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::builtin;
+use super::error::ProfileError;
+use super::load;
+use super::model::Profile;
+
+/// Why there is no such profile.
+#[derive(Debug, Error)]
+pub enum FindError {
+    /// No meter of that name.
+    #[error("there is no meter '{name}'; known are {}", .known.join(", "))]
+    Unknown {
+        /// The name given.
+        name: String,
+        /// All names there are.
+        known: Vec<String>,
+    },
+    /// The file cannot be read.
+    #[error("profile {file} cannot be read")]
+    Unreadable {
+        /// The file.
+        file: String,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file does not load.
+    #[error("profile does not load: {0}")]
+    Invalid(#[from] ProfileError),
+}
+
+/// Finds a profile. What looks like a path (a separator in it, or `.toml` at its end) is a file;
+/// else the user's own come before the program's.
+///
+/// # Errors
+/// [`FindError`] tells an unknown name, an unreadable file and a wrong one apart.
+pub fn find(meter: &str) -> Result<Profile, FindError> {
+    let path = Path::new(meter);
+    if meter.contains(std::path::is_separator) || is_toml(path) {
+        return file(path);
+    }
+    if let Some(path) = own_folder().map(|folder| folder.join(format!("{meter}.toml")))
+        && path.is_file()
+    {
+        return file(&path);
+    }
+    match builtin::find(meter) {
+        Some(found) => Ok(found.profile()),
+        None => Err(FindError::Unknown {
+            name: meter.to_owned(),
+            known: names(),
+        }),
+    }
+}
+
+/// All meters that can be named: the user's own and the program's, each once, by name.
+pub fn names() -> Vec<String> {
+    let mut names: Vec<String> = own_files()
+        .iter()
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .chain(builtin::all().iter().map(|meter| meter.name.to_owned()))
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// The user's own profiles, by name.
+pub fn own_files() -> Vec<PathBuf> {
+    let entries = own_folder().and_then(|folder| std::fs::read_dir(folder).ok());
+    let mut files: Vec<PathBuf> = entries
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| is_toml(path))
+        .collect();
+    files.sort_unstable();
+    files
+}
+
+/// Loads a profile from a file.
+///
+/// # Errors
+/// [`FindError::Unreadable`] or [`FindError::Invalid`].
+pub fn file(path: &Path) -> Result<Profile, FindError> {
+    let name = path.display().to_string();
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(load::load(&name, &text)?),
+        Err(source) => Err(FindError::Unreadable { file: name, source }),
+    }
+}
+
+fn is_toml(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end == "toml")
+}
+
+/// `meterpoll/meters` in the user's configuration folder.
+fn own_folder() -> Option<PathBuf> {
+    let set = |name| std::env::var_os(name).filter(|value| !value.is_empty());
+    let config = match set("XDG_CONFIG_HOME") {
+        Some(folder) => PathBuf::from(folder),
+        None if cfg!(windows) => PathBuf::from(set("APPDATA")?),
+        None => PathBuf::from(set("HOME")?).join(".config"),
+    };
+    Some(config.join("meterpoll").join("meters"))
+}

@@ -21,5 +21,6 @@ pub mod value;
 pub use error::ProfileError;
 pub use model::{Limits, Profile};
 
+pub use plan::Plan;
 pub use point::Point;
 pub use value::{Missing, Value};

@@ -1,1 +1,333 @@
-//! x
+//! What a person types to choose what is read: point names, globs, groups, raw registers.
+
+use std::str::FromStr;
+
+use rust_decimal::Decimal;
+use thiserror::Error;
+use wildmatch::WildMatch;
+
+use super::model::Profile;
+use super::point::Point;
+use crate::codec::value::{ByteOrder, RegisterType};
+use crate::codec::{AddressError, ReadFunction, RegisterRange};
+
+/// How register numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Numbering {
+    /// Protocol addresses, from 0.
+    #[default]
+    Protocol,
+    /// 30001 and 300001 for the first input register, 40001 and 400001 for the first holding
+    /// register. Numbers with `0x` stay protocol addresses.
+    Modicon,
+}
+
+/// Why a selection is not one.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum SelectError {
+    /// Not a name, a group or a register.
+    #[error("'{selector}': {problem}")]
+    Malformed {
+        /// What was typed.
+        selector: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// Registers that cannot be.
+    #[error("'{selector}': {problem}")]
+    Address {
+        /// What was typed.
+        selector: String,
+        /// What is wrong with it.
+        problem: AddressError,
+    },
+    /// A name that no point has.
+    #[error("{meter} has no point '{name}'{}", nearest(.near))]
+    UnknownPoint {
+        /// The meter.
+        meter: String,
+        /// The name.
+        name: String,
+        /// Names that look like it.
+        near: Vec<String>,
+    },
+    /// A group that the meter does not have.
+    #[error("{meter} has no group '@{name}'; its groups are {}", .known.join(", "))]
+    UnknownGroup {
+        /// The meter.
+        meter: String,
+        /// The name.
+        name: String,
+        /// The groups there are.
+        known: Vec<String>,
+    },
+    /// A glob that matches no point.
+    #[error("no point of {meter} matches '{glob}'")]
+    NoMatch {
+        /// The meter.
+        meter: String,
+        /// The glob.
+        glob: String,
+    },
+    /// A point that can only be written.
+    #[error("{name} can only be written")]
+    WriteOnly {
+        /// The point.
+        name: String,
+    },
+    /// A point or group, but no meter.
+    #[error("'{selector}' is a point's name, and without a meter there are only raw registers")]
+    NoMeter {
+        /// What was typed.
+        selector: String,
+    },
+    /// Nothing typed and nothing to fall back to.
+    #[error("nothing to read: {reason}")]
+    Nothing {
+        /// Why not.
+        reason: String,
+    },
+}
+
+fn nearest(near: &[String]) -> String {
+    if near.is_empty() {
+        String::new()
+    } else {
+        format!("; did you mean {}?", near.join(", "))
+    }
+}
+
+/// The points that `selectors` choose, in their order, each once.
+///
+/// # Errors
+/// [`SelectError`] for the first selector that chooses nothing.
+pub fn select(
+    selectors: &[String],
+    numbering: Numbering,
+    profile: Option<&Profile>,
+) -> Result<Vec<Point>, SelectError> {
+    let default = [format!("@{}", Profile::DEFAULT_GROUP)];
+    let selectors = if selectors.is_empty() {
+        is_default_there(profile)?;
+        &default
+    } else {
+        selectors
+    };
+    let mut points: Vec<Point> = Vec::new();
+    for selector in selectors {
+        for point in one(selector, numbering, profile)? {
+            if !points.contains(&point) {
+                points.push(point);
+            }
+        }
+    }
+    Ok(points)
+}
+
+fn is_default_there(profile: Option<&Profile>) -> Result<(), SelectError> {
+    let reason = match profile {
+        None => "name registers such as 0x0000+10, or a meter with --meter".to_owned(),
+        Some(profile) if profile.group(Profile::DEFAULT_GROUP).is_none() => {
+            format!("{} has no group @default, so name points", profile.name)
+        }
+        Some(_) => return Ok(()),
+    };
+    Err(SelectError::Nothing { reason })
+}
+
+fn one(
+    selector: &str,
+    numbering: Numbering,
+    profile: Option<&Profile>,
+) -> Result<Vec<Point>, SelectError> {
+    if selector.starts_with(|first: char| first.is_ascii_digit()) {
+        return registers(selector, numbering);
+    }
+    let Some(profile) = profile else {
+        return Err(SelectError::NoMeter {
+            selector: selector.to_owned(),
+        });
+    };
+    let meter = profile.name.clone();
+    if let Some(name) = selector.strip_prefix('@') {
+        let Some(group) = profile.group(name) else {
+            return Err(SelectError::UnknownGroup {
+                meter,
+                name: name.to_owned(),
+                known: profile
+                    .groups
+                    .iter()
+                    .map(|group| format!("@{}", group.name))
+                    .collect(),
+            });
+        };
+        return Ok(group
+            .filter(|point| point.access.readable())
+            .cloned()
+            .collect());
+    }
+    if selector.contains(['*', '?']) {
+        let glob = WildMatch::new(selector);
+        let matches: Vec<Point> = profile
+            .points
+            .iter()
+            .filter(|point| point.access.readable() && glob.matches(&point.name))
+            .cloned()
+            .collect();
+        if matches.is_empty() {
+            let glob = selector.to_owned();
+            return Err(SelectError::NoMatch { meter, glob });
+        }
+        return Ok(matches);
+    }
+    match profile.point(selector) {
+        Some(point) if point.access.readable() => Ok(vec![point.clone()]),
+        Some(point) => Err(SelectError::WriteOnly {
+            name: point.name.clone(),
+        }),
+        None => Err(SelectError::UnknownPoint {
+            meter,
+            name: selector.to_owned(),
+            near: near(selector, profile),
+        }),
+    }
+}
+
+/// Up to three names that look like `name`, the nearest first.
+fn near(name: &str, profile: &Profile) -> Vec<String> {
+    const ALIKE: f64 = 0.75;
+    let mut scored: Vec<(f64, &str)> = profile
+        .points
+        .iter()
+        .map(|point| (strsim::jaro_winkler(name, &point.name), point.name.as_str()))
+        .filter(|(score, _)| *score >= ALIKE)
+        .collect();
+    scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+    scored
+        .iter()
+        .take(3)
+        .map(|(_, name)| (*name).to_owned())
+        .collect()
+}
+
+/// Raw registers: `ADDRESS[+COUNT][:TYPE[/ORDER]][*FACTOR][=UNIT]`.
+fn registers(selector: &str, numbering: Numbering) -> Result<Vec<Point>, SelectError> {
+    let malformed = |problem: String| SelectError::Malformed {
+        selector: selector.to_owned(),
+        problem,
+    };
+    let address = |problem| SelectError::Address {
+        selector: selector.to_owned(),
+        problem,
+    };
+    let (rest, unit) = split(selector, '=');
+    let (rest, factor) = split(rest, '*');
+    let (place, form) = split(rest, ':');
+    let (start, count) = split(place, '+');
+    let (start, function) = first_register(start, numbering).map_err(malformed)?;
+    let (kind, order) = form
+        .map_or(Ok((RegisterType::U16, ByteOrder::Abcd)), type_and_order)
+        .map_err(malformed)?;
+    let scale = match factor {
+        None => Decimal::ONE,
+        Some(text) if kind.is_number() => Decimal::from_str(text)
+            .ok()
+            .filter(|factor| !factor.is_zero())
+            .ok_or_else(|| malformed(format!("'{text}' is no factor, such as 0.1")))?,
+        Some(_) => return Err(malformed(format!("type {kind} takes no factor"))),
+    };
+    let width = kind.registers();
+    let total = match count {
+        None => width,
+        Some(text) => number(text).ok_or_else(|| malformed(not_a_number(text)))?,
+    };
+    if total == 0 {
+        return Err(malformed("0 registers are nothing to read".to_owned()));
+    }
+    if total % width != 0 {
+        return Err(malformed(format!(
+            "{total} registers are no whole number of {kind} values, {width} registers each"
+        )));
+    }
+    if u32::from(start) + u32::from(total) > 0x1_0000 {
+        return Err(address(AddressError::PastEnd {
+            start,
+            count: total,
+        }));
+    }
+    (0..total / width)
+        .map(|index| {
+            let range = RegisterRange::new(start + index * width, width).map_err(address)?;
+            Ok(Point {
+                scale,
+                unit: unit.map(str::to_owned),
+                function,
+                ..Point::raw(range, kind, order)
+            })
+        })
+        .collect()
+}
+
+/// The part before `mark`, and the part after it if there is one.
+fn split(text: &str, mark: char) -> (&str, Option<&str>) {
+    match text.split_once(mark) {
+        Some((before, after)) => (before, Some(after)),
+        None => (text, None),
+    }
+}
+
+fn number(text: &str) -> Option<u16> {
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(hex) => u16::from_str_radix(hex, 16).ok(),
+        None => text.parse().ok(),
+    }
+}
+
+fn not_a_number(text: &str) -> String {
+    format!("'{text}' is no number from 0 to 65535, or 0x0 to 0xFFFF")
+}
+
+/// The protocol address of the first register, and the function its numbering implies.
+fn first_register(text: &str, numbering: Numbering) -> Result<(u16, Option<ReadFunction>), String> {
+    if numbering == Numbering::Protocol || text.starts_with("0x") || text.starts_with("0X") {
+        return number(text)
+            .map(|address| (address, None))
+            .ok_or_else(|| not_a_number(text));
+    }
+    let expected = || {
+        format!(
+            "'{text}' is no register in Modicon numbering: 30001 to 39999 or 300001 to 365536 \
+             for input registers, 40001 to 49999 or 400001 to 465536 for holding registers"
+        )
+    };
+    if text.len() != 5 && text.len() != 6 {
+        return Err(expected());
+    }
+    let function = match text.as_bytes().first() {
+        Some(b'3') => ReadFunction::InputRegisters,
+        Some(b'4') => ReadFunction::HoldingRegisters,
+        _ => return Err(expected()),
+    };
+    let register: Option<u32> = text.get(1..).and_then(|digits| digits.parse().ok());
+    register
+        .and_then(|register| u16::try_from(register.checked_sub(1)?).ok())
+        .map(|address| (address, Some(function)))
+        .ok_or_else(expected)
+}
+
+/// `TYPE`, `TYPE/ORDER`, `ascii/N` or `ascii/N/ORDER`.
+fn type_and_order(text: &str) -> Result<(RegisterType, ByteOrder), String> {
+    let whole = |text: &str| {
+        text.parse::<RegisterType>()
+            .map_err(|error| error.to_string())
+    };
+    match text.rsplit_once('/') {
+        Some((kind, order)) if kind != "ascii" => {
+            let order = order
+                .parse::<ByteOrder>()
+                .map_err(|error| error.to_string())?;
+            Ok((whole(kind)?, order))
+        }
+        _ => Ok((whole(text)?, ByteOrder::Abcd)),
+    }
+}
