@@ -70,7 +70,7 @@ pub enum DecodeError {
     /// A function this codec does not know in this direction.
     #[error("{0} is not handled")]
     Function(FunctionCode),
-    /// Broadcast, but not with a write; or a response from address 0.
+    /// Broadcast, but not with a write.
     #[error("{0} cannot be broadcast")]
     Broadcast(FunctionCode),
     /// A byte count that contradicts the rest of the frame.

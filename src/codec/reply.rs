@@ -49,7 +49,7 @@ pub enum Response {
     ExceptionStatus(u8),
     /// Function 08, sub-function 0: the word of the request.
     QueryData(u16),
-    /// Function 16: which registers were written.
+    /// Function 16: which registers were written, 1 to 123 of them.
     RegistersWritten(RegisterRange),
 }
 
@@ -133,7 +133,7 @@ impl Response {
             FunctionCode::WriteMultipleRegisters => {
                 let start = fields.u16("starting address")?;
                 let count = fields.u16("quantity of registers")?;
-                Self::RegistersWritten(RegisterRange::new(start, count)?)
+                Self::RegistersWritten(request::written(start, count)?)
             }
             other @ FunctionCode::Other(_) => return Err(DecodeError::Function(other)),
         })

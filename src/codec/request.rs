@@ -2,7 +2,7 @@
 
 use super::address::{RegisterAddress, RegisterRange, RegisterValues};
 use super::cursor::Cursor;
-use super::error::DecodeError;
+use super::error::{AddressError, DecodeError};
 use super::function::{FunctionCode, ReadFunction};
 
 /// Value field of function 05 for "on" (AP 6.5).
@@ -208,11 +208,23 @@ fn registers(fields: &mut Cursor<'_>) -> Result<Write, DecodeError> {
             found: count,
         });
     }
-    RegisterRange::new(start, count)?;
+    written(start, count)?;
     Ok(Write::Registers {
         start: RegisterAddress(start),
         values: RegisterValues::new(values)?,
     })
+}
+
+/// The registers that one message of function 16 writes: fewer than one read can ask for.
+pub(super) const fn written(start: u16, count: u16) -> Result<RegisterRange, AddressError> {
+    if count == 0 || count > RegisterValues::MOST {
+        return Err(AddressError::Count {
+            what: "write",
+            found: count as usize,
+            most: RegisterValues::MOST,
+        });
+    }
+    RegisterRange::new(start, count)
 }
 
 /// A byte count and exactly that many bytes of registers, to the end of the data unit.
@@ -222,8 +234,14 @@ pub(super) fn counted(
 ) -> Result<Vec<u16>, DecodeError> {
     let found = fields.u8("byte count")?;
     let expected = fields.remaining();
-    if usize::from(found) != expected || !expected.is_multiple_of(2) {
+    if usize::from(found) != expected {
         return Err(DecodeError::ByteCount { found, expected });
+    }
+    if !expected.is_multiple_of(2) {
+        return Err(DecodeError::Field {
+            field: "byte count",
+            found: u16::from(found),
+        });
     }
     (0..expected / 2).map(|_| fields.u16(field)).collect()
 }

@@ -255,7 +255,7 @@ pub enum ValueError {
         /// What it holds.
         found: u16,
     },
-    /// A date or time of which all words are 0: never set.
+    /// A date of which both words are 0: never set. A time of zeros is midnight.
     #[error("never set")]
     Unset,
 }
@@ -344,14 +344,16 @@ fn date(month_day: u16, year: u16) -> Result<jiff::civil::Date, ValueError> {
     if month_day == 0 && year == 0 {
         return Err(ValueError::Unset);
     }
-    let [month, day] = month_day.to_be_bytes();
-    let parts = (i16::try_from(year), i8::try_from(month), i8::try_from(day));
-    match parts {
-        (Ok(year), Ok(month), Ok(day)) => jiff::civil::Date::new(year, month, day)
-            .map_err(|_| impossible("month and day", month_day)),
-        (Err(_), ..) => Err(impossible("year", year)),
-        _ => Err(impossible("month and day", month_day)),
+    // The manual's year has four digits, and there is no year 0.
+    let Ok(civil_year @ 1..=9999) = i16::try_from(year) else {
+        return Err(impossible("year", year));
+    };
+    let [month, day] = month_day.to_be_bytes().map(i8::try_from);
+    match (month, day) {
+        (Ok(month), Ok(day)) => jiff::civil::Date::new(civil_year, month, day).ok(),
+        _ => None,
     }
+    .ok_or(impossible("month and day", month_day))
 }
 
 fn text(kind: RegisterType, order: ByteOrder, registers: &[u16]) -> String {
@@ -379,8 +381,8 @@ fn text(kind: RegisterType, order: ByteOrder, registers: &[u16]) -> String {
     text.trim_end_matches([' ', '\0']).to_owned()
 }
 
-/// Writes an integer into registers; the inverse of [`decode`] for integers, hex and bits.
-/// `None` when the type is not an integer or does not hold the number.
+/// Writes an integer into registers; the inverse of [`decode`] for integers, hex and bits, and
+/// 1 to 26 for a letter. `None` when the type is not an integer or does not hold the number.
 pub fn encode_integer(kind: RegisterType, order: ByteOrder, number: i128) -> Option<Vec<u16>> {
     let (lowest, highest) = kind.bounds()?;
     if !(lowest..=highest).contains(&number) {
