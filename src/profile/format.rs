@@ -49,13 +49,16 @@
 //! no_value = { high_word = 0x7FFF, means = "overflow" }  # or raw = 65535, means = "absent"
 //! alone = true                  # must be read by a request of its own
 //! function = 4                  # the one function that reads it, where the two differ
-//! verified = false              # the address was not read in the maker's manual; default true
+//! verified = false              # address or scale were not read in the maker's manual; default true
 //! page = "8"
 //! ```
 
 use std::collections::BTreeMap;
+use std::fmt;
 
-use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{self, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
 /// The whole file.
@@ -71,7 +74,7 @@ pub struct ProfileFile {
     pub(super) limits: LimitsTable,
     pub(super) identification: Option<IdentificationTable>,
     #[serde(default)]
-    pub(super) labels: BTreeMap<String, Spanned<LabelTable>>,
+    pub(super) labels: BTreeMap<String, LabelTable>,
     #[serde(default)]
     pub(super) groups: BTreeMap<Spanned<String>, Vec<Spanned<String>>>,
     pub(super) points: Vec<PointTable>,
@@ -91,7 +94,7 @@ pub struct LineTable {
 #[serde(deny_unknown_fields)]
 pub struct LimitsTable {
     pub(super) highest_unit: Option<Spanned<u16>>,
-    pub(super) functions: Option<Vec<Spanned<u8>>>,
+    pub(super) functions: Option<Spanned<Vec<Spanned<u8>>>>,
     #[serde(default)]
     pub(super) interchangeable_reads: bool,
     #[serde(default)]
@@ -111,11 +114,11 @@ pub struct LimitsTable {
 #[serde(deny_unknown_fields)]
 pub struct IdentificationTable {
     pub(super) point: Spanned<String>,
-    pub(super) codes: Vec<u16>,
+    pub(super) codes: Spanned<Vec<u16>>,
 }
 
 /// Names of codes or bits; keys are numbers, decimal or `0x`.
-pub type LabelTable = BTreeMap<String, String>;
+pub type LabelTable = BTreeMap<Spanned<String>, String>;
 
 /// One of `[[points]]`.
 #[derive(Debug, Deserialize)]
@@ -131,7 +134,7 @@ pub struct PointTable {
     #[serde(default)]
     pub(super) about: String,
     pub(super) access: Option<Spanned<String>>,
-    pub(super) range: Option<Spanned<(i64, i64)>>,
+    pub(super) range: Option<Spanned<Vec<i64>>>,
     pub(super) labels: Option<Spanned<LabelsKey>>,
     pub(super) no_value: Option<Spanned<NoValueTable>>,
     #[serde(default)]
@@ -148,8 +151,7 @@ const fn verified() -> bool {
 }
 
 /// A number with or without decimals.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, Copy)]
 pub enum Number {
     /// Without.
     Integer(i64),
@@ -157,9 +159,32 @@ pub enum Number {
     Float(f64),
 }
 
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+
+        impl Visitor<'_> for Either {
+            type Value = Number;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number")
+            }
+
+            fn visit_i64<E: de::Error>(self, number: i64) -> Result<Number, E> {
+                Ok(Number::Integer(number))
+            }
+
+            fn visit_f64<E: de::Error>(self, number: f64) -> Result<Number, E> {
+                Ok(Number::Float(number))
+            }
+        }
+
+        deserializer.deserialize_any(Either)
+    }
+}
+
 /// The name of a shared table, or the table itself.
-#[derive(Debug, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug)]
 pub enum LabelsKey {
     /// A table of `[labels]`.
     Shared(String),
@@ -167,11 +192,36 @@ pub enum LabelsKey {
     Own(LabelTable),
 }
 
+// By hand, because what serde derives for "one of two" loses the lines of the keys.
+impl<'de> Deserialize<'de> for LabelsKey {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+
+        impl<'de> Visitor<'de> for Either {
+            type Value = LabelsKey;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table of names, or the name of one in [labels]")
+            }
+
+            fn visit_str<E: de::Error>(self, name: &str) -> Result<LabelsKey, E> {
+                Ok(LabelsKey::Shared(name.to_owned()))
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<LabelsKey, A::Error> {
+                LabelTable::deserialize(MapAccessDeserializer::new(table)).map(LabelsKey::Own)
+            }
+        }
+
+        deserializer.deserialize_any(Either)
+    }
+}
+
 /// What stands for "no value": one of the two markers, and what it means.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NoValueTable {
     pub(super) high_word: Option<u16>,
-    pub(super) raw: Option<i64>,
-    pub(super) means: String,
+    pub(super) raw: Option<Spanned<i64>>,
+    pub(super) means: Spanned<String>,
 }

@@ -1,6 +1,7 @@
 //! The strict loader: TOML text to a checked [`Profile`], or one error with file, line and key.
 
 mod point;
+mod syntax;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,10 +11,12 @@ use toml::Spanned;
 use wildmatch::WildMatch;
 
 use super::error::{Problem, ProfileError};
-use super::format::{IdentificationTable, LimitsTable, LineTable, ProfileFile};
+use super::format::{
+    IdentificationTable, LabelTable, LimitsTable, LineTable, PointTable, ProfileFile,
+};
 use super::model::{Group, Identification, Limits, Profile};
 use super::point::Point;
-use crate::codec::{FunctionCode, RegisterRange, RegisterValues, UnitRange};
+use crate::codec::{FunctionCode, ReadFunction, RegisterRange, RegisterValues, UnitRange};
 use crate::transport::{LineSettings, Parity, StopBits};
 
 /// Loads a profile; `file` is how errors name it.
@@ -22,10 +25,12 @@ use crate::transport::{LineSettings, Parity, StopBits};
 /// [`ProfileError`] for the first thing that is wrong.
 pub fn load(file: &str, text: &str) -> Result<Profile, ProfileError> {
     let source = Source { file, text };
-    let table: ProfileFile = toml::from_str(text).map_err(|error| source.syntax(&error))?;
+    let table: ProfileFile =
+        toml::from_str(text).map_err(|error| syntax::explain(&source, &error))?;
     source.name(&table.name, "name")?;
     let limits = limits(&source, &table.limits)?;
-    let points = points(&source, &table, &limits)?;
+    let labels = shared_labels(&source, &table.labels)?;
+    let points = points(&source, &table.points, &labels, &limits)?;
     let groups = groups(&source, &table.groups, &points)?;
     let identification = table
         .identification
@@ -51,8 +56,8 @@ struct Source<'a> {
 
 impl Source<'_> {
     fn line_of(&self, offset: usize) -> usize {
-        let before = self.text.get(..offset).unwrap_or(self.text);
-        before.matches('\n').count() + 1
+        let bytes = self.text.bytes().take(offset);
+        bytes.filter(|byte| *byte == b'\n').count() + 1
     }
 
     fn error(&self, at: Range<usize>, key: impl Into<String>, problem: Problem) -> ProfileError {
@@ -66,30 +71,12 @@ impl Source<'_> {
 
     fn value<T>(&self, found: &Spanned<T>, key: &str, expected: impl Into<String>) -> ProfileError {
         let shown = self.text.get(found.span()).unwrap_or_default();
+        let lines: Vec<&str> = shown.lines().map(str::trim).collect();
         let problem = Problem::Value {
-            found: shown.to_owned(),
+            found: lines.join(" "),
             expected: expected.into(),
         };
         self.error(found.span(), key, problem)
-    }
-
-    fn syntax(&self, error: &toml::de::Error) -> ProfileError {
-        let start = error.span().map_or(0, |span| span.start);
-        // "unknown field" and the like name the key themselves; for a value of the wrong kind it
-        // stands before the `=`.
-        let before = self.text.get(..start).unwrap_or_default();
-        let line = before.rsplit('\n').next().unwrap_or_default();
-        let key = line.trim_end().strip_suffix('=').map(|left| {
-            let left = left.trim_end();
-            let start = left.rfind([' ', ',', '{', '\t']).map_or(0, |at| at + 1);
-            left.get(start..).unwrap_or_default()
-        });
-        ProfileError {
-            file: self.file.to_owned(),
-            line: self.line_of(start),
-            key: key.unwrap_or_default().to_owned(),
-            problem: Box::new(Problem::Syntax(error.message().replace('\n', ", "))),
-        }
     }
 
     fn name(&self, name: &Spanned<String>, key: &str) -> Result<(), ProfileError> {
@@ -146,7 +133,7 @@ fn line(source: &Source<'_>, table: &LineTable) -> Result<LineSettings, ProfileE
             "none" => Parity::None,
             "even" => Parity::Even,
             "odd" => Parity::Odd,
-            _ => return Err(source.value(text, "line.parity", "none, even or odd")),
+            _ => return Err(source.value(text, "line.parity", "\"none\", \"even\" or \"odd\"")),
         },
     };
     let stop_bits = match &table.stop_bits {
@@ -176,15 +163,15 @@ fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileErr
     };
     let functions: Vec<FunctionCode> = match &table.functions {
         None => default.functions,
-        Some(codes) => codes
-            .iter()
-            .map(|code| function(source, code, "limits.functions"))
-            .collect::<Result<_, _>>()?,
+        Some(codes) => functions(source, codes)?,
     };
     let mut broadcast_functions = Vec::new();
     for code in &table.broadcast_functions {
         let key = "limits.broadcast_functions";
         let function = function(source, code, key)?;
+        if !matches!(code.as_ref(), 5 | 6 | 16) {
+            return Err(source.value(code, key, "5, 6 or 16, a function that writes"));
+        }
         if !functions.contains(&function) {
             return Err(source.value(code, key, "one of limits.functions"));
         }
@@ -226,6 +213,26 @@ fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileErr
     })
 }
 
+fn functions(
+    source: &Source<'_>,
+    codes: &Spanned<Vec<Spanned<u8>>>,
+) -> Result<Vec<FunctionCode>, ProfileError> {
+    let key = "limits.functions";
+    let functions: Vec<FunctionCode> = codes
+        .as_ref()
+        .iter()
+        .map(|code| function(source, code, key))
+        .collect::<Result<_, _>>()?;
+    let reads = [ReadFunction::HoldingRegisters, ReadFunction::InputRegisters];
+    if !reads
+        .iter()
+        .any(|read| functions.contains(&FunctionCode::from(*read)))
+    {
+        return Err(source.value(codes, key, "a list with 3 or 4 in it, to read with"));
+    }
+    Ok(functions)
+}
+
 fn function(
     source: &Source<'_>,
     code: &Spanned<u8>,
@@ -237,17 +244,33 @@ fn function(
     }
 }
 
+/// The tables of `[labels]`, by name.
+type SharedLabels = BTreeMap<String, BTreeMap<u16, String>>;
+
+/// All of them, used or not.
+fn shared_labels(
+    source: &Source<'_>,
+    tables: &BTreeMap<String, LabelTable>,
+) -> Result<SharedLabels, ProfileError> {
+    let tables = tables.iter().map(|(name, table)| {
+        let names = point::label_names(source, table, &format!("labels.{name}"))?;
+        Ok((name.clone(), names))
+    });
+    tables.collect()
+}
+
 /// All points by address, each name once, no two on the same registers.
 fn points(
     source: &Source<'_>,
-    table: &ProfileFile,
+    rows: &[PointTable],
+    labels: &SharedLabels,
     limits: &Limits,
 ) -> Result<Vec<Point>, ProfileError> {
     let mut lines: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut points: Vec<(Point, Range<usize>)> = Vec::with_capacity(table.points.len());
-    for row in &table.points {
+    let mut points: Vec<(Point, Range<usize>)> = Vec::with_capacity(rows.len());
+    for row in rows {
         let name = row.name.as_ref().as_str();
-        let point = point::point(source, row, &table.labels, limits)?;
+        let point = point::point(source, row, labels, limits)?;
         let line = source.line_of(row.name.span().start);
         if let Some(first) = lines.insert(name, line) {
             let problem = Problem::DuplicateName { first };
@@ -256,20 +279,29 @@ fn points(
         points.push((point, row.address.span()));
     }
     points.sort_by_key(|(point, _)| (point.range, point.alone));
-    overlaps(source, &points)?;
+    overlaps(source, &points, limits)?;
     Ok(points.into_iter().map(|(point, _)| point).collect())
 }
 
 /// Two points on one register are a slip of the pen, unless one of them is read alone (the meter
-/// then answers such a request with something else) or different functions read them.
-fn overlaps(source: &Source<'_>, points: &[(Point, Range<usize>)]) -> Result<(), ProfileError> {
+/// then answers such a request with something else) or functions that are not interchangeable read
+/// them.
+fn overlaps(
+    source: &Source<'_>,
+    points: &[(Point, Range<usize>)],
+    limits: &Limits,
+) -> Result<(), ProfileError> {
+    let read_with = |point: &Point| {
+        let own = point.function.filter(|_| !limits.interchangeable_reads);
+        own.unwrap_or_else(|| limits.read_function())
+    };
     // The point that reaches furthest so far, a function each.
     let mut furthest: Vec<&(Point, Range<usize>)> = Vec::new();
     for entry in points.iter().filter(|(point, _)| !point.alone) {
         let (point, span) = entry;
         let before = furthest
             .iter()
-            .position(|(other, _)| other.function == point.function);
+            .position(|(other, _)| read_with(other) == read_with(point));
         let Some(at) = before else {
             furthest.push(entry);
             continue;
@@ -329,16 +361,26 @@ fn identification(
     table: IdentificationTable,
     points: &[Point],
 ) -> Result<Identification, ProfileError> {
-    let name = table.point.as_ref();
-    if !points.iter().any(|point| point.name == *name) {
+    let (name, key) = (table.point.as_ref(), "identification.point");
+    let Some(point) = points.iter().find(|point| point.name == *name) else {
         let problem = Problem::Unknown {
             what: "point",
             found: name.clone(),
         };
-        return Err(source.error(table.point.span(), "identification.point", problem));
+        return Err(source.error(table.point.span(), key, problem));
+    };
+    if point.kind.registers() != 1 || !point.access.readable() {
+        return Err(source.value(
+            &table.point,
+            key,
+            "a point of one register that can be read",
+        ));
+    }
+    if table.codes.as_ref().is_empty() {
+        return Err(source.value(&table.codes, "identification.codes", "a list of codes"));
     }
     Ok(Identification {
         point: table.point.into_inner(),
-        codes: table.codes,
+        codes: table.codes.into_inner(),
     })
 }

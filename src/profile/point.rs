@@ -40,7 +40,7 @@ pub struct Point {
     pub alone: bool,
     /// The one function it can be read with; `None` leaves the choice to the meter's limits.
     pub function: Option<ReadFunction>,
-    /// Its address was read in the maker's manual, not worked out or taken from a driver.
+    /// Its address and scale were read in the maker's manual, not worked out or taken from a driver.
     pub verified: bool,
     /// Page of the manual.
     pub page: String,
@@ -160,9 +160,7 @@ impl Point {
         {
             return Ok(Value::Text(label.clone()));
         }
-        Decimal::try_from_i128_with_scale(number, 0)
-            .ok()
-            .and_then(|number| number.checked_mul(self.scale))
+        times(number, 0, self.scale)
             .map(Value::Decimal)
             .ok_or(Missing::Mismatch)
     }
@@ -172,13 +170,27 @@ impl Point {
         if self.scale == Decimal::ONE {
             return Ok(Value::Single(number));
         }
-        // Scaled from the digits the single prints, not from the ones its widening adds.
-        let printed = number.to_string().parse().unwrap_or(f64::from(number));
-        self.double(printed)
+        self.scaled(f64::from(number), &number.to_string())
     }
 
     fn double(&self, number: f64) -> Result<Value, Missing> {
-        let scaled = number * self.scale.to_f64().unwrap_or(1.0);
+        finite(number)?;
+        if self.scale == Decimal::ONE {
+            return Ok(Value::Double(number));
+        }
+        self.scaled(number, &number.to_string())
+    }
+
+    /// Scaled from the digits a float prints, not from the ones its binary form adds, and rounded
+    /// once; as a float where the product is no decimal.
+    fn scaled(&self, number: f64, printed: &str) -> Result<Value, Missing> {
+        let exact = Decimal::from_str_exact(printed)
+            .ok()
+            .and_then(|printed| times(printed.mantissa(), printed.scale(), self.scale));
+        let scaled = match exact.and_then(|product| product.to_string().parse().ok()) {
+            Some(scaled) => scaled,
+            None => number * self.scale.to_f64().unwrap_or(1.0),
+        };
         finite(scaled).map(Value::Double)
     }
 
@@ -190,6 +202,13 @@ impl Point {
             _ => format!("0x{word:04X}"),
         }
     }
+}
+
+/// `mantissa` with this many decimals times the scale, exactly and with all their decimals; `None`
+/// where a decimal does not hold that many digits.
+pub(super) fn times(mantissa: i128, decimals: u32, scale: Decimal) -> Option<Decimal> {
+    let product = mantissa.checked_mul(scale.mantissa())?;
+    Decimal::try_from_i128_with_scale(product, decimals + scale.scale()).ok()
 }
 
 const fn finite(number: f64) -> Result<f64, Missing> {
@@ -207,7 +226,8 @@ fn bit_names(names: &BTreeMap<u16, String>, word: u16) -> String {
     let mut shown: Vec<String> = Vec::new();
     let mut unknown = word;
     for (mask, name) in names {
-        if word & mask == *mask {
+        // A name for 0 is the name of "no bit at all".
+        if word & mask == *mask && (*mask != 0 || word == 0) {
             shown.push(name.clone());
             unknown &= !mask;
         }

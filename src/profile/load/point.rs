@@ -1,25 +1,24 @@
 //! One point of the file, checked.
 
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 use rust_decimal::Decimal;
 use toml::Spanned;
 
-use super::Source;
+use super::{SharedLabels, Source};
 use crate::codec::value::RegisterType;
 use crate::codec::{FunctionCode, ReadFunction, RegisterRange};
 use crate::profile::error::{Problem, ProfileError};
 use crate::profile::format::{LabelTable, LabelsKey, NoValueTable, Number, PointTable};
 use crate::profile::model::Limits;
-use crate::profile::point::{Access, Labels, Marker, NoValue, Point};
+use crate::profile::point::{Access, Labels, Marker, NoValue, Point, times};
 use crate::profile::value::Missing;
 
 /// Checks one point against itself and the meter's limits.
 pub(super) fn point(
     source: &Source<'_>,
     row: &PointTable,
-    shared: &BTreeMap<String, Spanned<LabelTable>>,
+    shared: &SharedLabels,
     limits: &Limits,
 ) -> Result<Point, ProfileError> {
     let name = row.name.as_ref().clone();
@@ -125,11 +124,18 @@ fn scaled(
     let exact = match scale.as_ref() {
         Number::Integer(number) => Some(Decimal::from(*number)),
         // The shortest form that reads back the same is what was written.
-        Number::Float(number) => number.to_string().parse().ok(),
+        Number::Float(number) => Decimal::from_str_exact(&number.to_string()).ok(),
     };
-    exact
-        .filter(|scale| !scale.is_zero())
-        .ok_or_else(|| source.value(scale, key, "a decimal number other than 0"))
+    let Some(exact) = exact.filter(|scale| !scale.is_zero()) else {
+        return Err(source.value(scale, key, "a number other than 0, of at most 28 digits"));
+    };
+    if let Some((least, most)) = kind.bounds()
+        && (times(least, 0, exact).is_none() || times(most, 0, exact).is_none())
+    {
+        let expected = format!("a number that every {kind} can be multiplied with exactly");
+        return Err(source.value(scale, key, expected));
+    }
+    Ok(exact)
 }
 
 fn access(
@@ -144,31 +150,28 @@ fn access(
         "read" => Ok(Access::Read),
         "write" => Ok(Access::Write),
         "read-write" => Ok(Access::ReadWrite),
-        _ => Err(source.value(text, key, "read, write or read-write")),
+        _ => Err(source.value(text, key, "\"read\", \"write\" or \"read-write\"")),
     }
 }
 
 fn writable(
     source: &Source<'_>,
-    range: &Spanned<(i64, i64)>,
+    range: &Spanned<Vec<i64>>,
     kind: RegisterType,
     key: &str,
 ) -> Result<(i128, i128), ProfileError> {
-    let (lowest, highest) = (i128::from(range.as_ref().0), i128::from(range.as_ref().1));
-    match kind.bounds() {
-        Some((least, most)) if least <= lowest && lowest <= highest && highest <= most => {
-            Ok((lowest, highest))
-        }
-        Some((least, most)) => Err(source.value(
-            range,
-            key,
-            format!("[lowest, highest] within {least} to {most}, what {kind} holds"),
-        )),
-        None => {
-            let problem = Problem::Conflict("only an integer has a range");
-            Err(source.error(range.span(), key, problem))
+    let Some((least, most)) = kind.bounds() else {
+        let problem = Problem::Conflict("only an integer has a range");
+        return Err(source.error(range.span(), key, problem));
+    };
+    if let [lowest, highest] = *range.as_ref().as_slice() {
+        let (lowest, highest) = (i128::from(lowest), i128::from(highest));
+        if least <= lowest && lowest <= highest && highest <= most {
+            return Ok((lowest, highest));
         }
     }
+    let expected = format!("[lowest, highest] within {least} to {most}, what {kind} holds");
+    Err(source.value(range, key, expected))
 }
 
 fn read_function(
@@ -195,41 +198,63 @@ fn no_value(
     key: &str,
 ) -> Result<NoValue, ProfileError> {
     let conflict = |what| Err(source.error(table.span(), key, Problem::Conflict(what)));
-    let marker = match (table.as_ref().high_word, table.as_ref().raw) {
+    let marker = match (table.as_ref().high_word, &table.as_ref().raw) {
         (Some(word), None) => Marker::HighWord(word),
-        (None, Some(raw)) if kind.bounds().is_some() => Marker::Raw(i128::from(raw)),
-        (None, Some(_)) => return conflict("only an integer has a raw marker; use high_word"),
+        (None, Some(raw)) => Marker::Raw(raw_marker(source, raw, kind, key)?),
         _ => return conflict("give either high_word or raw"),
     };
-    let missing = match table.as_ref().means.as_str() {
+    let means = &table.as_ref().means;
+    let missing = match means.as_ref().as_str() {
         "overflow" => Missing::Overflow,
         "absent" => Missing::Absent,
-        _ => return conflict("means is \"overflow\" or \"absent\""),
+        _ => {
+            let key = format!("{key}.means");
+            return Err(source.value(means, &key, "\"overflow\" or \"absent\""));
+        }
     };
     Ok(NoValue { marker, missing })
+}
+
+/// A number that can be found in the registers: another would never mark anything.
+fn raw_marker(
+    source: &Source<'_>,
+    raw: &Spanned<i64>,
+    kind: RegisterType,
+    key: &str,
+) -> Result<i128, ProfileError> {
+    let number = i128::from(*raw.as_ref());
+    match kind.bounds() {
+        Some((least, most)) if kind != RegisterType::Letter => {
+            if (least..=most).contains(&number) {
+                return Ok(number);
+            }
+            let expected = format!("within {least} to {most}, what {kind} holds");
+            Err(source.value(raw, &format!("{key}.raw"), expected))
+        }
+        _ => {
+            let problem = Problem::Conflict("only an integer has a raw marker; use high_word");
+            Err(source.error(raw.span(), format!("{key}.raw"), problem))
+        }
+    }
 }
 
 fn named(
     source: &Source<'_>,
     labels: &Spanned<LabelsKey>,
     kind: RegisterType,
-    shared: &BTreeMap<String, Spanned<LabelTable>>,
+    shared: &SharedLabels,
     key: &str,
 ) -> Result<Labels, ProfileError> {
-    let (table, at) = match labels.as_ref() {
-        LabelsKey::Own(table) => (table, labels.span()),
-        LabelsKey::Shared(name) => {
-            let Some(table) = shared.get(name) else {
-                let problem = Problem::Unknown {
-                    what: "table in [labels]",
-                    found: name.clone(),
-                };
-                return Err(source.error(labels.span(), key, problem));
+    let names = match labels.as_ref() {
+        LabelsKey::Own(table) => label_names(source, table, key)?,
+        LabelsKey::Shared(name) => shared.get(name).cloned().ok_or_else(|| {
+            let problem = Problem::Unknown {
+                what: "label table",
+                found: name.clone(),
             };
-            (table.as_ref(), table.span())
-        }
+            source.error(labels.span(), key, problem)
+        })?,
     };
-    let names = label_names(source, table, &at, key)?;
     match kind {
         RegisterType::Bits => Ok(Labels::Bits(names)),
         RegisterType::U16 | RegisterType::Hex => Ok(Labels::Codes(names)),
@@ -241,32 +266,30 @@ fn named(
 }
 
 /// Labels by number. `1` and `0x1` are one number, so a table can clash with itself.
-fn label_names(
+pub(super) fn label_names(
     source: &Source<'_>,
     table: &LabelTable,
-    at: &Range<usize>,
     key: &str,
 ) -> Result<BTreeMap<u16, String>, ProfileError> {
     let mut names: BTreeMap<u16, String> = BTreeMap::new();
-    for (code, name) in table {
-        let number = match code.strip_prefix("0x") {
+    let mut rows: Vec<_> = table.iter().collect();
+    rows.sort_by_key(|(code, _)| code.span().start);
+    for (code, name) in rows {
+        let text = code.as_ref();
+        let number = match text.strip_prefix("0x") {
             Some(hex) => u16::from_str_radix(hex, 16),
-            None => code.parse(),
+            None => text.parse(),
         };
         let Ok(number) = number else {
-            let problem = Problem::Value {
-                found: format!("code '{code}'"),
-                expected: "0 to 65535, or 0x0 to 0xFFFF".to_owned(),
-            };
-            return Err(source.error(at.clone(), key, problem));
+            return Err(source.value(code, key, "a code: 0 to 65535, or 0x0 to 0xFFFF"));
         };
         if let Some(first) = names.insert(number, name.clone()) {
             let problem = Problem::LabelClash {
-                code: code.clone(),
+                code: text.clone(),
                 first,
                 second: name.clone(),
             };
-            return Err(source.error(at.clone(), key, problem));
+            return Err(source.error(code.span(), key, problem));
         }
     }
     Ok(names)
