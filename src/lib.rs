@@ -2,4 +2,5 @@
 
 pub mod codec;
 pub mod profile;
+pub mod sim;
 pub mod transport;
