@@ -3,4 +3,5 @@
 pub mod client;
 pub mod codec;
 pub mod profile;
+pub mod sim;
 pub mod transport;

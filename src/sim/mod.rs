@@ -1,0 +1,24 @@
+//! The simulated line `sim:`: meters inside the program, on the server side of the codec.
+//!
+//! A [`SimulatedLine`] is a [`crate::transport::Transport`] like a serial port; a frame sent into
+//! it is answered by the [`Meter`]s on it. What a meter shows comes from its [`Model`]: the
+//! [`Pqm`], which measures a [`Load`].
+//!
+//! * [`wave`] and [`load`]: three phases as a pure function of time and a seed. Nothing is stored
+//!   between runs, yet counters only ever rise, and every quantity agrees with the others.
+//! * [`history`]: what has added up since 2020, the demand, the lowest and the highest.
+//! * [`pqm`]: which of this stands behind which point, in whole steps of the registers.
+//! * [`meter`]: requests in, answers, exceptions or silence out.
+//! * [`line`](mod@line): the transport.
+
+pub mod history;
+pub mod line;
+pub mod load;
+pub mod meter;
+pub mod pqm;
+pub mod wave;
+
+pub use line::SimulatedLine;
+pub use load::Load;
+pub use meter::{Content, Measured, Meter, Model};
+pub use pqm::Pqm;
