@@ -1,7 +1,27 @@
-//! Reads, writes and logs electricity meters over Modbus RTU.
+//! Reads electricity meters over Modbus RTU: in points and units, and never a wrong number.
+//!
+//! The layers, each importing only those below it:
+//!
+//! ```text
+//! main → commands → cli        what can be typed
+//!                 → output     readings to table, CSV, JSON
+//!                 → readings   a read plan carried out: a value or a fault for each point
+//!                 → sim        a simulated meter and its line
+//!                 → client     one request and its one answer; what is believed
+//!                 → profile    what a meter is: points, scales, limits, read planning
+//!                   → transport  moves bytes and keeps the line's time
+//!                   → codec      bytes ↔ typed values, pure
+//! ```
+//!
+//! A register address is the 0-based protocol address everywhere; other notations are parsed where
+//! they are typed.
 
+pub mod cli;
 pub mod client;
 pub mod codec;
+pub mod commands;
+pub mod output;
 pub mod profile;
+pub mod readings;
 pub mod sim;
 pub mod transport;

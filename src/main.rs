@@ -1,3 +1,7 @@
-//! Reads, writes and logs electricity meters.
+//! The program: arguments in, exit code out.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    meterpoll::commands::run(std::env::args_os()).into()
+}

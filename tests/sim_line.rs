@@ -68,11 +68,11 @@ fn an_answer_can_be_received_in_pieces() {
 #[test]
 fn silence_lets_the_whole_wait_pass() {
     let (mut line, clock) = line();
-    assert_eq!(receive(&mut line), []);
+    assert_eq!(receive(&mut line), Vec::<u8>::new());
     assert_eq!(clock.now(), WAIT);
     // Nobody is unit 18.
     line.send(&sealed(&[0x12, 0x07])).unwrap();
-    assert_eq!(receive(&mut line), []);
+    assert_eq!(receive(&mut line), Vec::<u8>::new());
     assert_eq!(clock.now(), 2 * WAIT);
 }
 
@@ -81,7 +81,7 @@ fn discarded_answers_are_gone() {
     let (mut line, _) = line();
     line.send(&LOOPBACK).unwrap();
     line.discard_input().unwrap();
-    assert_eq!(receive(&mut line), []);
+    assert_eq!(receive(&mut line), Vec::<u8>::new());
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub enum FindError {
         source: io::Error,
     },
     /// The file does not load.
-    #[error("profile does not load: {0}")]
+    #[error(transparent)]
     Invalid(#[from] ProfileError),
 }
 

@@ -1,0 +1,94 @@
+# Print an optspec for argparse to handle cmd's options that are independent of any subcommand.
+function __fish_meterpoll_global_optspecs
+    string join \n q/quiet v/verbose h/help V/version
+end
+
+function __fish_meterpoll_needs_command
+    # Figure out if the current invocation already has a command.
+    set -l cmd (commandline -opc)
+    set -e cmd[1]
+    argparse -s (__fish_meterpoll_global_optspecs) -- $cmd 2>/dev/null
+    or return
+    if set -q argv[1]
+        # Also print the command, so this can be used to figure out what it is.
+        echo $argv[1]
+        return 1
+    end
+    return 0
+end
+
+function __fish_meterpoll_using_subcommand
+    set -l cmd (__fish_meterpoll_needs_command)
+    test -z "$cmd"
+    and return 1
+    contains -- $cmd[1] $argv
+end
+
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -s h -l help -d 'Print help'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "meters" -d 'List known meters'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "ports" -d 'List serial ports, without opening any'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "completions" -d 'Print a shell\'s completion script'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s a -l unit -l unit-id -l slave -d 'The units to read: 17, or 1,2,5-9' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l meter -d 'The meter: a name that `meters list` shows, or a profile file' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l function -d 'The function to read with, for meters whose registers 03 and 04 differ [default: what the meter wants, else 3]' -r -f -a "3\t'Read Holding Registers'
+4\t'Read Input Registers'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l numbering -d 'How register numbers are written' -r -f -a "protocol\t'Addresses as on the wire, from 0'
+modicon\t'30001 or 300001 for input registers, 40001 or 400001 for holding registers'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s f -l format -d 'How readings are printed' -r -f -a "table\t'For people'
+csv\t'Comma-separated values with a header'
+json\t'One array of objects, one a reading'
+jsonl\t'One object a line, one a reading'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l layout -d 'Shape of CSV' -r -f -a "wide\t'A row a meter, a column a point'
+long\t'A row a reading'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
+even\t'Even parity, the standard\'s default'
+odd\t'Odd parity'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
+2\t'Two stop bits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms [default: the meter\'s longest answer time, else 1s]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l retries -d 'How often a read is repeated when the line fails' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l wait -d 'How long to wait for a port that another program holds' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
+on\t'The line echoes'
+off\t'The line does not echo'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l units -d 'Put units into the header of wide CSV'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l dry-run -d 'Print the requests in hex and send nothing'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list help" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list help" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list help" -s h -l help -d 'Print help'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list help" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list help" -f -a "list" -d 'List the meters inside the program and your own'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from list" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from list" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from list" -s h -l help -d 'Print help'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from list" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from help" -f -a "list" -d 'List the meters inside the program and your own'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s h -l help -d 'Print help'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s h -l help -d 'Print help'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "meters" -d 'List known meters'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "ports" -d 'List serial ports, without opening any'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "completions" -d 'Print a shell\'s completion script'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "list" -d 'List the meters inside the program and your own'

@@ -1,0 +1,78 @@
+//! Options about the line that commands share.
+
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+
+use super::values::{baud, duration};
+
+/// The port, its setting and how patient to be.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Line")]
+pub struct LineArguments {
+    /// Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line
+    #[arg(short, long, env = "METERPOLL_PORT", value_name = "PORT")]
+    pub port: String,
+    /// Speed in bits a second [default: the meter's factory setting, else 9600]
+    #[arg(short, long, value_name = "BAUD", value_parser = baud)]
+    pub baud: Option<u32>,
+    /// Parity [default: the meter's factory setting, else none]
+    #[arg(short = 'P', long, value_name = "PARITY")]
+    pub parity: Option<ParityChoice>,
+    /// Stop bits [default: the meter's factory setting, else 1]
+    #[arg(short, long, value_name = "BITS")]
+    pub stop_bits: Option<StopBitsChoice>,
+    /// How long a meter may take to begin its answer, such as 500ms [default: the meter's longest
+    /// answer time, else 1s]
+    #[arg(short, long, value_name = "TIME", value_parser = duration)]
+    pub timeout: Option<Duration>,
+    /// How often a read is repeated when the line fails
+    #[arg(long, value_name = "COUNT", default_value_t = 2)]
+    pub retries: u32,
+    /// Least time between the end of an answer and the next request [default: what the meter
+    /// wants; 3.5 characters of silence are kept always]
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    pub pause: Option<Duration>,
+    /// Time to wait after opening the port, for adapters that need it
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "0s")]
+    pub settle: Duration,
+    /// How long to wait for a port that another program holds
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "5s")]
+    pub wait: Duration,
+    /// Whether the line sends our own bytes back, as two-wire adapters may
+    #[arg(long, value_name = "WHEN", default_value = "auto")]
+    pub echo: EchoChoice,
+}
+
+/// `--parity`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ParityChoice {
+    /// No parity bit
+    None,
+    /// Even parity, the standard's default
+    Even,
+    /// Odd parity
+    Odd,
+}
+
+/// `--stop-bits`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StopBitsChoice {
+    /// One stop bit
+    #[value(name = "1")]
+    One,
+    /// Two stop bits
+    #[value(name = "2")]
+    Two,
+}
+
+/// `--echo`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EchoChoice {
+    /// Recognise an echo when one comes
+    Auto,
+    /// The line echoes
+    On,
+    /// The line does not echo
+    Off,
+}

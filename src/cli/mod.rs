@@ -1,0 +1,81 @@
+//! What can be typed: definitions of commands and options, nothing that does work, so that
+//! completions, man pages and tests can build it alone.
+
+mod line;
+mod read_registers;
+mod values;
+
+use clap::{ArgAction, Args, Parser, Subcommand};
+use clap_complete::Shell;
+
+pub use line::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
+pub use read_registers::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
+pub use values::Units;
+
+/// Reads electricity meters over Modbus RTU, in points and units.
+#[derive(Debug, Parser)]
+#[command(
+    name = "meterpoll",
+    version,
+    propagate_version = true,
+    help_expected = true,
+    arg_required_else_help = true,
+    after_help = "Exit codes: 0 done, 1 some readings missing, 2 wrong command line, 3 port, \
+                  4 no valid answer, 5 refused by the meter, 6 outcome of a write unknown, \
+                  7 output not written.\n\n\
+                  Try it without a meter: meterpoll read-registers --port sim: --unit 17 --meter pqm"
+)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+    /// How much to say.
+    #[command(flatten)]
+    pub verbosity: Verbosity,
+}
+
+/// How much to say on stderr.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Verbosity {
+    /// Print readings and errors only: no headings, footnotes or hints
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say what is being done; twice: show every frame in hex with times
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    pub verbose: u8,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Read points of a meter by name, or raw registers by address
+    ReadRegisters(Box<ReadRegisters>),
+    /// List known meters
+    Meters(Meters),
+    /// List serial ports, without opening any
+    Ports,
+    /// Print a shell's completion script
+    Completions(Completions),
+}
+
+/// Arguments of `meters`.
+#[derive(Debug, Args)]
+pub struct Meters {
+    /// What to show of them; list when left out
+    #[command(subcommand)]
+    pub command: Option<MetersCommand>,
+}
+
+/// The commands of `meters`.
+#[derive(Debug, Clone, Copy, Subcommand)]
+pub enum MetersCommand {
+    /// List the meters inside the program and your own
+    List,
+}
+
+/// Arguments of `completions`.
+#[derive(Debug, Args)]
+pub struct Completions {
+    /// The shell
+    pub shell: Shell,
+}

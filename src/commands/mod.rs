@@ -1,0 +1,49 @@
+//! One file a subcommand: arguments in, readings out. The only place that sees both the command
+//! line and the rest.
+
+mod completions;
+mod error;
+mod exit_code;
+mod logging;
+mod meters;
+mod open_line;
+mod ports;
+mod read_registers;
+mod report;
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+
+use clap::Parser;
+
+use crate::cli::{Arguments, Command};
+
+pub use error::CommandError;
+pub use exit_code::ExitCode;
+
+/// Runs the program with these arguments, the first being its own name, and returns what it ends
+/// with. Readings go to stdout, everything else to stderr.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(message) => return report::usage(&message),
+    };
+    logging::start(arguments.verbosity);
+    let quiet = arguments.verbosity.quiet;
+    let result = match arguments.command {
+        Command::ReadRegisters(arguments) => read_registers::run(&arguments, quiet),
+        Command::Meters(_) => meters::list(),
+        Command::Ports => ports::list(quiet),
+        Command::Completions(arguments) => completions::print_script(arguments.shell),
+    };
+    result.unwrap_or_else(|error| report::error(&error, quiet))
+}
+
+/// Writes text to stdout in one go.
+fn print(text: &[u8]) -> Result<ExitCode, CommandError> {
+    let mut out = io::stdout().lock();
+    out.write_all(text)
+        .and_then(|()| out.flush())
+        .map_err(CommandError::Output)?;
+    Ok(ExitCode::Done)
+}

@@ -1,0 +1,103 @@
+//! JSON: an object a reading, on lines of their own or in one array.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+use serde_json::value::RawValue;
+
+use super::{Sink, status, time};
+use crate::profile::{Point, Value};
+use crate::readings::Row;
+
+/// One reading. Numbers carry every digit the meter gave.
+#[derive(Serialize)]
+struct Object<'a> {
+    time: &'a str,
+    meter: Option<&'a str>,
+    unit_id: u8,
+    point: &'a str,
+    value: Option<Box<RawValue>>,
+    unit: Option<&'a str>,
+    status: String,
+}
+
+fn objects(points: &[Point], row: &Row) -> io::Result<Vec<String>> {
+    let time = time(row);
+    points
+        .iter()
+        .zip(&row.readings)
+        .map(|(point, reading)| {
+            let object = Object {
+                time: &time,
+                meter: Some(row.meter.as_str()).filter(|meter| !meter.is_empty()),
+                unit_id: row.unit.get(),
+                point: &point.name,
+                value: reading.as_ref().ok().map(raw).transpose()?,
+                unit: point.unit.as_deref(),
+                status: status(reading.as_ref().err().copied()),
+            };
+            Ok(serde_json::to_string(&object)?)
+        })
+        .collect()
+}
+
+/// A number as its own digits, everything else as a string.
+fn raw(value: &Value) -> Result<Box<RawValue>, serde_json::Error> {
+    let text = if value.is_number() {
+        value.to_string()
+    } else {
+        serde_json::to_string(&value.to_string())?
+    };
+    RawValue::from_string(text)
+}
+
+/// One object a line.
+pub struct JsonLines<W: Write>(W);
+
+impl<W: Write> JsonLines<W> {
+    /// Writes to `out`.
+    pub const fn new(out: W) -> Self {
+        Self(out)
+    }
+}
+
+impl<W: Write> Sink for JsonLines<W> {
+    fn row(&mut self, points: &[Point], row: &Row) -> io::Result<()> {
+        let mut lines = objects(points, row)?.join("\n");
+        lines.push('\n');
+        self.0.write_all(lines.as_bytes())?;
+        self.0.flush()
+    }
+
+    fn finish(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+/// All objects in one array.
+pub struct Json<W: Write> {
+    out: W,
+    begun: bool,
+}
+
+impl<W: Write> Json<W> {
+    /// Writes to `out`.
+    pub const fn new(out: W) -> Self {
+        Self { out, begun: false }
+    }
+}
+
+impl<W: Write> Sink for Json<W> {
+    fn row(&mut self, points: &[Point], row: &Row) -> io::Result<()> {
+        let start = if self.begun { ",\n" } else { "[\n" };
+        self.begun = true;
+        let text = format!("{start}{}", objects(points, row)?.join(",\n"));
+        self.out.write_all(text.as_bytes())
+    }
+
+    fn finish(&mut self) -> io::Result<()> {
+        let end = if self.begun { "\n]\n" } else { "[]\n" };
+        self.out.write_all(end.as_bytes())?;
+        self.out.flush()
+    }
+}

@@ -1,0 +1,56 @@
+//! Readings as people and programs want them.
+//!
+//! Every format is a [`Sink`] that takes one [`Row`] after the other. A row goes out in one write.
+
+pub mod columns;
+pub mod csv;
+pub mod json;
+pub mod table;
+
+use std::io;
+
+use crate::profile::Point;
+use crate::readings::Row;
+
+pub use csv::{LongCsv, WideCsv};
+pub use json::{Json, JsonLines};
+pub use table::Table;
+
+/// Takes rows and prints them.
+pub trait Sink {
+    /// Prints one meter's readings; `points` are what they are readings of.
+    ///
+    /// # Errors
+    /// What the destination says.
+    fn row(&mut self, points: &[Point], row: &Row) -> io::Result<()>;
+
+    /// Prints what comes after the last row.
+    ///
+    /// # Errors
+    /// What the destination says.
+    fn finish(&mut self) -> io::Result<()>;
+}
+
+/// Time as every output prints it: RFC 3339, UTC, milliseconds.
+pub fn time(row: &Row) -> String {
+    format!("{:.3}", row.time)
+}
+
+/// The status of a row or a reading.
+pub fn status(fault: Option<crate::readings::Fault>) -> String {
+    fault.map_or_else(|| "ok".to_owned(), |fault| fault.to_string())
+}
+
+/// Text from a meter made safe for a terminal: control characters are shown, not sent.
+pub fn escape(text: &str) -> String {
+    text.chars()
+        .flat_map(|c| {
+            let shown = if c.is_control() {
+                c.escape_default().collect()
+            } else {
+                vec![c]
+            };
+            shown.into_iter()
+        })
+        .collect()
+}

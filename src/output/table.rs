@@ -1,0 +1,111 @@
+//! A table for people.
+
+use std::io::{self, Write};
+
+use super::columns::columns;
+use super::{Sink, escape, status};
+use crate::profile::{Point, Value};
+use crate::readings::{Fault, Row};
+
+/// Behind the name of a point whose address was not read in the maker's manual.
+const UNVERIFIED: &str = " *";
+
+/// What that mark means.
+const FOOTNOTE: &str = "* not verified: address or scale was not read in the maker's manual";
+
+/// A table a meter: a heading, the points with values and units, and what is missing and why.
+pub struct Table<W: Write> {
+    out: W,
+    /// What stands in every heading behind the unit: the line. `None` leaves headings and
+    /// footnotes out.
+    line: Option<String>,
+    begun: bool,
+}
+
+impl<W: Write> Table<W> {
+    /// Writes to `out`. `line` says where the readings come from, `/dev/ttyUSB0 at 9600 8N1`.
+    pub const fn new(out: W, line: Option<String>) -> Self {
+        Self {
+            out,
+            line,
+            begun: false,
+        }
+    }
+}
+
+impl<W: Write> Sink for Table<W> {
+    fn row(&mut self, points: &[Point], row: &Row) -> io::Result<()> {
+        let mut text = String::new();
+        if self.begun {
+            text.push('\n');
+        }
+        self.begun = true;
+        if let Some(line) = &self.line {
+            let meter = if row.meter.is_empty() {
+                String::new()
+            } else {
+                format!("{}, ", row.meter)
+            };
+            let time = row.time.strftime("%Y-%m-%d %H:%M:%S UTC");
+            text = format!("{text}{meter}unit {} on {line}, {time}\n\n", row.unit);
+        }
+        text.push_str(&grid(points, row));
+        if self.line.is_some() && points.iter().any(|point| !point.verified) {
+            text = format!("{text}\n{FOOTNOTE}\n");
+        }
+        self.out.write_all(text.as_bytes())?;
+        self.out.flush()
+    }
+
+    fn finish(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+fn grid(points: &[Point], row: &Row) -> String {
+    let decimals = row
+        .readings
+        .iter()
+        .filter_map(|reading| reading.as_ref().ok().and_then(decimals))
+        .max()
+        .unwrap_or(0);
+    let missing = row.worst().is_some();
+    let mut header = vec!["POINT", "VALUE", "UNIT"];
+    if missing {
+        header.push("STATUS");
+    }
+    let lines = points.iter().zip(&row.readings).map(|(point, reading)| {
+        let mark = if point.verified { "" } else { UNVERIFIED };
+        let mut cells = vec![
+            format!("{}{mark}", point.name),
+            shown(reading, decimals),
+            point.unit.clone().unwrap_or_default(),
+        ];
+        if missing {
+            cells.push(status(reading.as_ref().err().copied()));
+        }
+        cells
+    });
+    columns(&header, &[1], lines)
+}
+
+/// A value as it stands in its column: numbers so that their decimal marks align.
+fn shown(reading: &Result<Value, Fault>, decimals: usize) -> String {
+    match reading {
+        Err(_) => format!("-{}", " ".repeat(decimals)),
+        Ok(value) => {
+            let text = escape(&value.to_string());
+            let own = self::decimals(value).unwrap_or(decimals);
+            format!("{text}{}", " ".repeat(decimals - own))
+        }
+    }
+}
+
+/// Characters of a number from its decimal mark on; `None` for text.
+fn decimals(value: &Value) -> Option<usize> {
+    if !value.is_number() {
+        return None;
+    }
+    let text = value.to_string();
+    Some(text.find('.').map_or(0, |mark| text.len() - mark))
+}

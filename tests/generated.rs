@@ -1,0 +1,99 @@
+//! Completions and man pages are made from the command line's definitions and checked in. After a
+//! change of those, `METERPOLL_UPDATE=1 cargo test --test generated` writes them anew.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use clap::{Command, CommandFactory};
+use clap_complete::Shell;
+use meterpoll::cli::Arguments;
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// Compares a folder with what it should hold, or writes it when asked to.
+#[track_caller]
+fn check(name: &str, expected: &BTreeMap<String, Vec<u8>>) {
+    let folder = folder(name);
+    if env::var_os("METERPOLL_UPDATE").is_some() {
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("the folder can be made");
+        for (file, bytes) in expected {
+            fs::write(folder.join(file), bytes).expect("the file can be written");
+        }
+    }
+    let found: BTreeMap<String, Vec<u8>> = fs::read_dir(&folder)
+        .expect("the folder is there")
+        .map(|entry| entry.expect("an entry").path())
+        .map(|path| {
+            let file = path
+                .file_name()
+                .expect("a file")
+                .to_string_lossy()
+                .into_owned();
+            (file, fs::read(&path).expect("a readable file"))
+        })
+        .collect();
+    let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&found), names(expected), "files in {name}/");
+    for (file, bytes) in expected {
+        assert!(
+            found[file] == *bytes,
+            "{name}/{file} is stale: METERPOLL_UPDATE=1 cargo test --test generated"
+        );
+    }
+}
+
+#[test]
+fn completions_say_what_the_program_takes() {
+    let mut files = BTreeMap::new();
+    for (shell, file) in [
+        (Shell::Bash, "meterpoll.bash"),
+        (Shell::Zsh, "_meterpoll"),
+        (Shell::Fish, "meterpoll.fish"),
+    ] {
+        let mut script = Vec::new();
+        clap_complete::generate(shell, &mut Arguments::command(), "meterpoll", &mut script);
+        files.insert(file.to_owned(), script);
+    }
+    check("completions", &files);
+}
+
+#[test]
+fn there_is_a_man_page_for_every_command() {
+    let mut command = Arguments::command();
+    command.build();
+    let mut files = BTreeMap::new();
+    pages(&command, &mut files);
+    check("man", &files);
+}
+
+fn pages(command: &Command, files: &mut BTreeMap<String, Vec<u8>>) {
+    // clap keeps names for the whole run.
+    let name = command.get_display_name().unwrap_or(command.get_name());
+    let name: &'static str = name.to_owned().leak();
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command.clone().name(name))
+        .render(&mut page)
+        .expect("writing to memory");
+    // The generator ends some lines in spaces.
+    let text = String::from_utf8(page).expect("text");
+    let lines: String = text
+        .lines()
+        .flat_map(|line| [line.trim_end(), "\n"])
+        .collect();
+    files.insert(format!("{name}.1"), lines.into_bytes());
+    for inner in command
+        .get_subcommands()
+        .filter(|inner| inner.get_name() != "help")
+    {
+        pages(inner, files);
+    }
+}
+
+#[test]
+fn the_definitions_of_the_command_line_hold_together() {
+    Arguments::command().debug_assert();
+}

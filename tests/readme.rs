@@ -1,0 +1,94 @@
+//! What the README says is true: its examples run, its profile loads, its tables are complete.
+
+mod support {
+    pub(crate) mod program;
+}
+
+use support::program::Program;
+
+const README: &str = include_str!("../README.md");
+
+/// Text of the fenced blocks of one language.
+fn blocks(language: &str) -> Vec<&'static str> {
+    let fence = format!("```{language}\n");
+    README
+        .split(&fence)
+        .skip(1)
+        .map(|rest| rest.split("```").next().expect("a fence is closed"))
+        .collect()
+}
+
+/// Words of a command line; only single quotes are used.
+fn words(line: &str) -> Vec<String> {
+    line.split_whitespace()
+        .map(|word| word.replace('\'', ""))
+        .collect()
+}
+
+#[test]
+fn the_two_commands_for_a_fresh_machine_are_there() {
+    assert_eq!(
+        blocks("sh"),
+        [
+            "cargo run --release -- read-registers --port sim: --unit 17 --meter pqm\n",
+            "cargo test\n"
+        ]
+    );
+}
+
+#[test]
+fn every_example_that_needs_no_adapter_runs() {
+    let mut ran = 0;
+    for block in blocks("console") {
+        let mut lines = block.lines().peekable();
+        while let Some(line) = lines.next() {
+            let command = line.strip_prefix("$ meterpoll ").expect("a command");
+            let mut expected = String::new();
+            while let Some(output) = lines.next_if(|line| !line.starts_with('$')) {
+                expected.push_str(output);
+                expected.push('\n');
+            }
+            if command.contains("/dev/") || command == "ports" {
+                continue;
+            }
+            let mut program = Program::new("");
+            for word in words(command) {
+                program = program.argument(word);
+            }
+            let output = program.output();
+            let stderr = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(0), "{command}: {stderr}");
+            assert_eq!(stderr, "", "{command}");
+            let stdout = String::from_utf8_lossy(&output.stdout);
+            assert!(stdout.starts_with(&expected), "{command}: {stdout}");
+            ran += 1;
+        }
+    }
+    assert_eq!(ran, 4);
+}
+
+#[test]
+fn the_profile_shown_loads() {
+    let blocks = blocks("toml");
+    let profile = meterpoll::profile::load::load("README.md", blocks[0]).expect("it loads");
+    assert_eq!(profile.name, "mine");
+    assert_eq!(profile.points.len(), 2);
+}
+
+#[test]
+fn every_option_it_names_is_in_the_help() {
+    let help = Program::new("read-registers --help").output();
+    let help = String::from_utf8(help.stdout).expect("text");
+    let mut named: Vec<&str> = README
+        .split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'))
+        .filter(|word| word.starts_with("--") && word.len() > 2)
+        .collect();
+    named.sort_unstable();
+    named.dedup();
+    // These belong to cargo.
+    named.retain(|option| !["--release", "--path"].contains(option));
+    assert!(named.len() > 10, "{named:?}");
+    for option in named {
+        assert!(help.contains(option), "{option} is not in the help");
+    }
+}
