@@ -29,6 +29,8 @@ pub struct Expectation<'a> {
     frame: &'a Frame,
     /// The first copy of the own frame is an echo, not an answer.
     drop_echo: bool,
+    /// The line can echo, for all that is known.
+    can_echo: bool,
     /// Bytes of the normal answer, CRC included.
     length: usize,
 }
@@ -36,13 +38,13 @@ pub struct Expectation<'a> {
 /// What the bytes so far amount to.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// This is the answer.
-    Answer(Reply),
+    /// This is the answer, and what came before it.
+    Answer(Reply, Evidence),
     /// Not yet.
     Waiting(Evidence),
 }
 
-/// What was seen in place of an answer.
+/// What was seen beside or in place of the answer.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Evidence {
     /// Copies of the own request.
@@ -54,26 +56,47 @@ pub struct Evidence {
     /// The longest beginning of an answer at the end of the bytes: how much of it is there, and
     /// how long it will be.
     pub begun: Option<(usize, usize)>,
-    /// An answer that is whole but for its CRC.
-    pub damaged: bool,
+    /// An answer that is whole but for its CRC, and how sure it is that it was the answer.
+    pub damaged: Option<Certainty>,
     /// A valid frame of the unit that is not the answer, in words.
     pub mismatch: Option<String>,
 }
 
+/// How sure it is that damaged bytes were the answer, so that no other one comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Certainty {
+    /// Noise or the own echo can look the same.
+    Doubtful,
+    /// Only an echo that was damaged itself can look the same.
+    Likely,
+    /// It cannot have been an echo either.
+    Certain,
+}
+
 impl<'a> Expectation<'a> {
-    /// What `request`, sent to `unit` as `frame`, implies. `seen` says that the line has echoed
-    /// before.
-    pub fn new(unit: Unit, request: &'a Request, frame: &'a Frame, echo: Echo, seen: bool) -> Self {
-        let drop_echo = match echo {
-            Echo::On => true,
-            Echo::Off => false,
-            Echo::Auto => seen || !is_mirrored(request),
+    /// What `request`, sent to `unit` as `frame`, implies. `echoes` says whether the line does so,
+    /// as far as it has been seen.
+    pub fn new(
+        unit: Unit,
+        request: &'a Request,
+        frame: &'a Frame,
+        echo: Echo,
+        echoes: Option<bool>,
+    ) -> Self {
+        let (drop_echo, can_echo) = match echo {
+            Echo::On => (true, true),
+            Echo::Off => (false, false),
+            Echo::Auto => (
+                echoes == Some(true) || !is_mirrored(request),
+                echoes != Some(false),
+            ),
         };
         Self {
             unit,
             request,
             frame,
             drop_echo,
+            can_echo,
             length: answer_length(request),
         }
     }
@@ -91,24 +114,48 @@ impl<'a> Expectation<'a> {
             }
             if let Some(frame) = self.candidate(rest) {
                 match rtu::decode_reply(frame) {
-                    // A short answer can be the start of our own echo, byte for byte; one byte
-                    // more tells.
-                    Ok(_) if self.could_be_echo(rest) => {
-                        evidence.begun = Some((rest.len(), self.frame.as_bytes().len()));
+                    // A short answer can be the start of our own echo, byte for byte.
+                    Ok(_) if self.may_be_echo(frame) => {
+                        let found = "what may be the echo of the request";
+                        evidence.mismatch = Some(found.to_owned());
+                        at += frame.len();
+                        continue;
                     }
-                    Ok((_, reply)) if self.is_answered_by(&reply) => return Verdict::Answer(reply),
+                    Ok((_, reply)) if self.is_answered_by(&reply) => {
+                        // An answer that is not whole yet can hold what looks like an exception.
+                        if evidence.begun.is_none() {
+                            return Verdict::Answer(reply, evidence);
+                        }
+                        at += frame.len();
+                        continue;
+                    }
                     Ok(_) => {}
-                    Err(_) => evidence.damaged = true,
+                    Err(_) => {
+                        let certainty = self.certainty(frame, &evidence);
+                        evidence.damaged = evidence.damaged.max(Some(certainty));
+                    }
                 }
             } else if self.begins(rest) {
                 let wanted = self.length_of(rest);
-                if evidence.begun.is_none() {
-                    evidence.begun = Some((rest.len(), wanted));
-                }
+                evidence.begun.get_or_insert((rest.len(), wanted));
             }
             at += self.skip(rest, &mut evidence);
         }
         Verdict::Waiting(evidence)
+    }
+
+    /// How sure it is that a damaged answer was one.
+    fn certainty(&self, damaged: &[u8], evidence: &Evidence) -> Certainty {
+        // Unit, function and byte count are too many bytes for noise; two of them are not.
+        let is_counted =
+            self.byte_count().is_some() && damaged.get(1) == Some(&self.request.function().get());
+        if !is_counted || self.begins(self.frame.as_bytes()) {
+            Certainty::Doubtful
+        } else if self.can_echo && evidence.echoes == 0 {
+            Certainty::Likely
+        } else {
+            Certainty::Certain
+        }
     }
 
     /// An echo is dropped once where the answer looks the same, else as often as it comes.
@@ -170,9 +217,9 @@ impl<'a> Expectation<'a> {
         }
     }
 
-    fn could_be_echo(&self, rest: &[u8]) -> bool {
-        let frame = self.frame.as_bytes();
-        self.drop_echo && rest.len() < frame.len() && frame.starts_with(rest)
+    fn may_be_echo(&self, answer: &[u8]) -> bool {
+        let own = self.frame.as_bytes();
+        self.drop_echo && answer.len() < own.len() && own.starts_with(answer)
     }
 
     fn is_answered_by(&self, reply: &Reply) -> bool {
@@ -184,7 +231,7 @@ impl<'a> Expectation<'a> {
 
     fn describe(&self, frame: &[u8]) -> String {
         match rtu::decode_reply(frame) {
-            Err(error) => format!("a frame that {error}"),
+            Err(error) => format!("a malformed frame: {error}"),
             Ok((_, Reply::Exception { function, code })) => {
                 format!("{code} to {function}")
             }
@@ -208,7 +255,7 @@ impl Evidence {
 }
 
 /// Whether the normal answer repeats the request byte for byte.
-const fn is_mirrored(request: &Request) -> bool {
+pub(super) const fn is_mirrored(request: &Request) -> bool {
     use crate::codec::Write;
     matches!(
         request,

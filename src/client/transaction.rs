@@ -5,7 +5,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 use log::info;
 
-use super::belief::{self, Echo, Evidence, Expectation, Verdict};
+use super::belief::{self, Certainty, Echo, Evidence, Expectation, Verdict};
 use super::failure::Failure;
 use crate::codec::rtu::{self, Frame};
 use crate::codec::{Reply, Request, Response, Unit};
@@ -58,7 +58,7 @@ struct Asked<'a> {
 }
 
 impl<'a> Asked<'a> {
-    fn expectation(&self, echo: Echo, echoes: bool) -> Expectation<'a> {
+    fn expectation(&self, echo: Echo, echoes: Option<bool>) -> Expectation<'a> {
         Expectation::new(self.unit, self.request, self.frame, echo, echoes)
     }
 }
@@ -67,8 +67,9 @@ impl<'a> Asked<'a> {
 pub struct Client {
     line: Line,
     echo: Echo,
-    /// The line has echoed.
-    echoes: bool,
+    /// Whether the line echoes; unknown until an echo was seen, or an answer with nothing before
+    /// it.
+    echoes: Option<bool>,
     /// Whether anything was sent yet: the pause is one between requests.
     sent: bool,
     /// Answers that have not come and may still do so.
@@ -91,7 +92,7 @@ impl Client {
         Self {
             line,
             echo,
-            echoes: false,
+            echoes: None,
             sent: false,
             owed: None,
         }
@@ -167,7 +168,7 @@ impl Client {
         loop {
             let left = deadline.saturating_sub(self.line.now());
             if left.is_zero() {
-                if evidence.damaged {
+                if evidence.damaged == Some(Certainty::Certain) {
                     self.answered();
                 }
                 return Err(failure(evidence, received.len(), timeout));
@@ -175,25 +176,46 @@ impl Client {
             if self.line.receive_into(&mut received, left)? == 0 {
                 continue;
             }
+            let verdict = expectation.judge(&received);
             forget_oldest(&mut received);
-            match expectation.judge(&received) {
-                Verdict::Answer(reply) => {
+            match verdict {
+                Verdict::Answer(reply, before) => {
+                    self.learn_echo(&before);
+                    if self.is_clean(asked.request, &before) {
+                        self.echoes.get_or_insert(false);
+                    }
                     self.answered();
+                    if before.stray > 0 {
+                        info!("{} stray bytes before the answer skipped", before.stray);
+                    }
                     let took = self.line.now().saturating_sub(sent).as_secs_f64() * 1000.0;
                     info!("unit {}: answered in {took:.1} ms", asked.unit);
                     return Ok(reply);
                 }
                 Verdict::Waiting(found) => evidence = found,
             }
-            self.echoes |= evidence.echoes > 0;
+            self.learn_echo(&evidence);
             deadline = if evidence.has_begun() {
                 end_by
-            } else if evidence.damaged {
+            } else if evidence.damaged >= Some(Certainty::Likely) {
                 begin_by.min(self.line.now() + GAP)
             } else {
                 begin_by
             };
         }
+    }
+
+    fn learn_echo(&mut self, seen: &Evidence) {
+        if seen.echoes > 0 {
+            self.echoes = Some(true);
+        }
+    }
+
+    /// Whether an answer with `before` before it shows that the line does not echo: it was asked
+    /// for once, so it is no late one that came ahead of the echo.
+    fn is_clean(&self, request: &Request, before: &Evidence) -> bool {
+        let asked_once = self.owed.as_ref().is_some_and(|owed| owed.answers == 1);
+        asked_once && *before == Evidence::default() && !belief::is_mirrored(request)
     }
 
     /// One more answer is to be expected. Until when it is waited for: as long again as an answer
@@ -230,7 +252,6 @@ impl Client {
                 break;
             }
             self.line.receive_into(&mut received, left)?;
-            forget_oldest(&mut received);
             let asked = Asked {
                 unit: owed.unit,
                 request: &owed.request,
@@ -238,11 +259,12 @@ impl Client {
                 patience: Patience::default(),
             };
             let verdict = asked.expectation(self.echo, self.echoes).judge(&received);
-            if let Verdict::Answer(_) = verdict {
+            if let Verdict::Answer(..) = verdict {
                 info!("unit {}: a late answer was thrown away", owed.unit);
                 received.clear();
                 self.answered();
             }
+            forget_oldest(&mut received);
         }
         Ok(())
     }
@@ -265,7 +287,7 @@ fn failure(evidence: Evidence, received: usize, timeout: Duration) -> Failure {
     if let Some(found) = evidence.mismatch {
         return Failure::Mismatch { found };
     }
-    if evidence.damaged {
+    if evidence.damaged.is_some() {
         return Failure::Damaged { received };
     }
     if let Some((received, expected)) = evidence.begun {

@@ -84,10 +84,17 @@ impl Plan {
                 range: point.range,
             })
             .collect();
+        let rules = Rules {
+            limits,
+            apart: sorted.iter().filter(|spot| spot.alone).copied().collect(),
+        };
+        for spot in &mut sorted {
+            spot.alone |= !rules.allow_company(spot.function, spot.range);
+        }
         sorted.sort_by_key(|spot| (spot.function, spot.alone, spot.range, spot.index));
         let mut reads: Vec<PlannedRead> = sorted
             .chunk_by(|a, b| a.function == b.function && a.alone == b.alone)
-            .flat_map(|spots| cheapest(spots, limits, cost))
+            .flat_map(|spots| cheapest(spots, &rules, cost))
             .collect();
         reads.sort_by_key(|read| (read.function, read.range));
         Self { reads }
@@ -103,14 +110,40 @@ struct Spot {
     range: RegisterRange,
 }
 
+/// What a read of several points must keep to. A single point is read as it is: the loader has
+/// checked it against the limits, and for raw registers the meter has the last word.
+struct Rules<'a> {
+    limits: &'a Limits,
+    /// The points that must be alone: no read of others runs over their registers.
+    apart: Vec<Spot>,
+}
+
+impl Rules<'_> {
+    /// Whether these registers may be read for several points at once.
+    fn allow_company(&self, function: ReadFunction, range: RegisterRange) -> bool {
+        let start = u32::from(range.start().get());
+        let table = |address: u32| {
+            let size = self.limits.table_registers?;
+            Some(address / u32::from(size))
+        };
+        range.count() <= self.limits.read_registers
+            && table(start) == table(range.end() - 1)
+            && !self.apart.iter().any(|spot| {
+                spot.function == function
+                    && u32::from(spot.range.start().get()) < range.end()
+                    && start < spot.range.end()
+            })
+    }
+}
+
 /// The shortest path over spots of one function, sorted by address.
-fn cheapest(spots: &[Spot], limits: &Limits, cost: Cost) -> Vec<PlannedRead> {
+fn cheapest(spots: &[Spot], rules: &Rules<'_>, cost: Cost) -> Vec<PlannedRead> {
     // best[n]: the cost of the first n spots, and where the last read of it begins.
     let mut best: Vec<(Duration, usize)> = vec![(Duration::MAX, 0); spots.len() + 1];
     best[0] = (Duration::ZERO, 0);
     for first in 0..spots.len() {
         let (so_far, _) = best[first];
-        for (last, range) in reads_from(&spots[first..], limits) {
+        for (last, range) in reads_from(&spots[first..], rules) {
             let total = so_far + cost.of(u32::from(range.count()));
             let after = &mut best[first + last + 1];
             if total < after.0 {
@@ -124,7 +157,7 @@ fn cheapest(spots: &[Spot], limits: &Limits, cost: Cost) -> Vec<PlannedRead> {
         let start = best[end].1;
         let taken = &spots[start..end];
         // The path was built from legal reads, so this one is among them.
-        let range = reads_from(taken, limits).last().map(|(_, range)| range);
+        let range = reads_from(taken, rules).last().map(|(_, range)| range);
         reads.extend(range.map(|range| PlannedRead {
             function: taken[0].function,
             range,
@@ -138,24 +171,18 @@ fn cheapest(spots: &[Spot], limits: &Limits, cost: Cost) -> Vec<PlannedRead> {
 /// Every legal read that begins with the first spot: the last spot it covers, and its registers.
 fn reads_from<'a>(
     spots: &'a [Spot],
-    limits: &'a Limits,
+    rules: &'a Rules<'_>,
 ) -> impl Iterator<Item = (usize, RegisterRange)> + 'a {
     let start = spots[0].range.start().get();
-    let table = |address: u32| limits.table_registers.map(|size| address / u32::from(size));
     let mut end = spots[0].range.end();
     spots.iter().enumerate().map_while(move |(last, spot)| {
         let is_hole = u32::from(spot.range.start().get()) > end;
-        if last > 0 && (spot.alone || (is_hole && !limits.read_holes)) {
+        if last > 0 && (spot.alone || (is_hole && !rules.limits.read_holes)) {
             return None;
         }
         end = end.max(spot.range.end());
         let count = u16::try_from(end - u32::from(start)).ok()?;
-        // A single point is read as it is: the loader has checked it against the limits, and for
-        // raw registers the meter has the last word.
-        if last > 0 && (count > limits.read_registers || table(u32::from(start)) != table(end - 1))
-        {
-            return None;
-        }
-        Some((last, RegisterRange::new(start, count).ok()?))
+        let range = RegisterRange::new(start, count).ok()?;
+        (last == 0 || rules.allow_company(spot.function, range)).then_some((last, range))
     })
 }

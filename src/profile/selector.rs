@@ -277,10 +277,13 @@ fn split(text: &str, mark: char) -> (&str, Option<&str>) {
 }
 
 fn number(text: &str) -> Option<u16> {
-    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(hex) => u16::from_str_radix(hex, 16).ok(),
-        None => text.parse().ok(),
+    let hex = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"));
+    let (digits, radix) = hex.map_or((text, 10), |hex| (hex, 16));
+    // The conversion would take a sign.
+    if digits.starts_with('+') {
+        return None;
     }
+    u16::from_str_radix(digits, radix).ok()
 }
 
 fn not_a_number(text: &str) -> String {
