@@ -238,7 +238,8 @@ impl<'a> Expectation<'a> {
             Ok((_, Reply::Normal(Response::Registers { function, values })))
                 if FunctionCode::from(function) == self.request.function() =>
             {
-                format!("{} registers", values.len())
+                let asked = (self.length - (frame.len() - 2 * values.len())) / 2;
+                format!("{} registers where {asked} were asked for", values.len())
             }
             Ok((_, Reply::Normal(_))) => frame.get(1).map_or_else(String::new, |code| {
                 format!("an answer to {}", FunctionCode::from(*code))

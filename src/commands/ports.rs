@@ -2,18 +2,17 @@
 
 use serialport::{SerialPortInfo, SerialPortType};
 
+use super::report::Report;
 use super::{CommandError, ExitCode, print};
 use crate::output::columns::columns;
 use crate::output::escape;
 
 /// Lists the ports, each with what it is and its lasting name.
-pub(super) fn list(quiet: bool) -> Result<ExitCode, CommandError> {
+pub(super) fn list(report: &Report) -> Result<ExitCode, CommandError> {
     let mut ports = serialport::available_ports().map_err(CommandError::Ports)?;
     ports.sort_by(|a, b| a.port_name.cmp(&b.port_name));
     if ports.is_empty() {
-        if !quiet {
-            eprintln!("no serial ports; sim: is a simulated line inside the program");
-        }
+        report.remark("no serial ports; sim: is a simulated line inside the program");
         return Ok(ExitCode::Done);
     }
     let lines = ports.iter().map(|port| {
