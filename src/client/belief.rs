@@ -238,11 +238,9 @@ impl<'a> Expectation<'a> {
             Ok((_, Reply::Normal(Response::Registers { function, values })))
                 if FunctionCode::from(function) == self.request.function() =>
             {
-                format!("{} registers", values.len())
+                format!("{} registers", values.count())
             }
-            Ok((_, Reply::Normal(_))) => frame.get(1).map_or_else(String::new, |code| {
-                format!("an answer to {}", FunctionCode::from(*code))
-            }),
+            Ok((_, Reply::Normal(response))) => format!("an answer to {}", response.function()),
         }
     }
 }
@@ -287,7 +285,7 @@ fn matches(request: &Request, response: &Response) -> bool {
                 function: answered,
                 values,
             },
-        ) => function == answered && values.len() == usize::from(range.count()),
+        ) => function == answered && values.count() == range.count(),
         (
             Request::Write(Write::Coil { address, on }),
             Response::Coil {
@@ -302,8 +300,8 @@ fn matches(request: &Request, response: &Response) -> bool {
                 value: stored,
             },
         ) => address == answered && value == stored,
-        (Request::Write(Write::Registers { start, values }), Response::RegistersWritten(range)) => {
-            range.start() == *start && range.count() == values.count()
+        (Request::Write(Write::Registers(block)), Response::RegistersWritten(range)) => {
+            block.range() == *range
         }
         (Request::ReadExceptionStatus, Response::ExceptionStatus(_)) => true,
         (Request::ReturnQueryData(word), Response::QueryData(answered)) => word == answered,

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use meterpoll::codec::length::{self, Direction};
 use meterpoll::codec::{
-    Destination, ExceptionCode, Reply, Request, Response, Unit, UnitRange, rtu,
+    Destination, ExceptionCode, ReadValues, Reply, Request, Response, Unit, UnitRange, rtu,
 };
 use serialport::{SerialPort, TTYPort};
 
@@ -111,7 +111,8 @@ pub(crate) fn answer(unit: u16, request: &[u8]) -> Option<Vec<u8>> {
             let first = range.start().get();
             Reply::Normal(Response::Registers {
                 function,
-                values: (first..first + range.count()).map(register).collect(),
+                values: ReadValues::new((first..first + range.count()).map(register).collect())
+                    .expect("as many as were asked for"),
             })
         }
         other => Reply::Exception {
