@@ -4,6 +4,7 @@ use std::error::Error;
 use std::io;
 
 use super::{CommandError, ExitCode};
+use crate::cli::Usage;
 use crate::client::Failure;
 use crate::codec::{AddressError, ExceptionCode};
 use crate::profile::find::FindError;
@@ -11,10 +12,10 @@ use crate::profile::selector::SelectError;
 use crate::readings::Failed;
 use crate::transport::OpenError;
 
-/// Prints what clap has to say: help on stdout, errors on stderr.
-pub(super) fn usage(message: &clap::Error) -> ExitCode {
+/// Prints what there is to say to a command line that nothing comes of.
+pub(super) fn usage(message: &Usage) -> ExitCode {
     match message.print() {
-        Ok(()) if message.use_stderr() => ExitCode::Usage,
+        Ok(()) if message.is_error() => ExitCode::Usage,
         Ok(()) => ExitCode::Done,
         Err(_) => ExitCode::Output,
     }
