@@ -6,7 +6,7 @@ mod question;
 use meterpoll::client::Echo;
 use meterpoll::client::belief::{Certainty, Evidence, Verdict};
 use meterpoll::codec::rtu;
-use meterpoll::codec::{FunctionCode, ReadFunction, Reply, Request, Response};
+use meterpoll::codec::{FunctionCode, ReadFunction, ReadValues, Reply, Request, Response};
 
 use self::question::{Question, exception, framed, read, registers, reply_frame};
 
@@ -61,7 +61,7 @@ fn a_frame_of_another_unit_is_no_answer() {
 fn a_valid_frame_of_the_unit_that_answers_something_else_is_a_mismatch() {
     let input = Response::Registers {
         function: ReadFunction::InputRegisters,
-        values: vec![1, 2, 3],
+        values: ReadValues::new(vec![1, 2, 3]).expect("values"),
     };
     for (frame, found) in [
         (
@@ -147,7 +147,7 @@ fn every_exception_code_is_the_answer_of_a_unit_that_refuses() {
 #[test]
 fn an_exception_to_another_function_is_none_to_this_one() {
     for code in (0..0x80_u8).filter(|code| *code != 0x03) {
-        let refusal = exception(FunctionCode::from(code), 2);
+        let refusal = exception(FunctionCode::try_from(code).expect("a function"), 2);
         assert_eq!(
             question().answer(&reply_frame(0x11, &refusal)),
             None,

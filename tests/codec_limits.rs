@@ -4,10 +4,10 @@
 //! "AP" is the Modbus Application Protocol Specification V1.1b3, "SL" Modbus over Serial Line
 //! V1.02.
 
-use meterpoll::codec::rtu::{check, decode_reply, decode_request};
+use meterpoll::codec::rtu::{check, decode_reply, decode_request, encode_reply, encode_request};
 use meterpoll::codec::{
-    AddressError, DecodeError, Destination, FunctionCode, RegisterRange, RegisterValues, Reply,
-    Request, Response, Unit, UnitRange,
+    AddressError, DecodeError, Destination, FunctionCode, ReadFunction, ReadValues, RegisterBlock,
+    RegisterRange, Reply, Request, Response, Unit, UnitRange, Write, WrittenRange,
 };
 
 /// A frame with a right CRC: `body` is the unit and the data unit.
@@ -39,6 +39,14 @@ fn a_read_is_of_1_to_125_registers() {
     assert_eq!(RegisterRange::new(0, 126), Err(count("read", 126, 125)));
     assert_eq!(RegisterRange::new(0, 1).unwrap().count(), 1);
     assert_eq!(RegisterRange::new(0, 125).unwrap().count(), 125);
+    for registers in [0, 126, 65_536, 65_537] {
+        assert_eq!(
+            ReadValues::new(vec![0; registers]),
+            Err(count("read", registers, 125))
+        );
+    }
+    assert_eq!(ReadValues::new(vec![7]).unwrap().count(), 1);
+    assert_eq!(ReadValues::new(vec![7; 125]).unwrap().count(), 125);
     for function in [3, 4] {
         assert!(Request::decode(&[function, 0, 0, 0, 1]).is_ok());
         assert!(Request::decode(&[function, 0, 0, 0, 125]).is_ok());
@@ -67,13 +75,20 @@ fn a_read_is_of_1_to_125_registers() {
 #[test]
 fn a_write_is_of_1_to_123_registers() {
     // AP 6.12: 0001 to 007B, in the request and in the response.
-    assert_eq!(RegisterValues::new(vec![]), Err(count("write", 0, 123)));
-    assert_eq!(
-        RegisterValues::new(vec![0; 124]),
-        Err(count("write", 124, 123))
-    );
-    assert_eq!(RegisterValues::new(vec![0; 1]).unwrap().count(), 1);
-    assert_eq!(RegisterValues::new(vec![0; 123]).unwrap().count(), 123);
+    let block = |count| RegisterBlock::new(0, vec![0; count]);
+    for (registers, given) in [(0, 0), (124, 124), (125, 125), (65_535, u16::MAX)] {
+        let error = count("write", registers, 123);
+        assert_eq!(block(registers), Err(error));
+        assert_eq!(WrittenRange::new(0, given), Err(error));
+    }
+    // 65536 must not wrap around to 0.
+    for registers in [65_536, 65_537] {
+        assert_eq!(block(registers), Err(count("write", registers, 123)));
+    }
+    for (registers, given) in [(1, 1), (123, 123)] {
+        assert_eq!(block(registers).unwrap().count(), given);
+        assert_eq!(WrittenRange::new(0, given).unwrap().count(), given);
+    }
     assert!(Request::decode(&padded(&[16, 0, 0, 0, 1, 2], 2)).is_ok());
     assert!(Request::decode(&padded(&[16, 0, 0, 0, 123, 246], 246)).is_ok());
     for (registers, bytes) in [(0, 0), (124, 248), (125, 250), (126, 252)] {
@@ -124,10 +139,48 @@ fn no_range_runs_past_ffff() {
         RegisterRange::new(start, 125),
         Err(AddressError::PastEnd { start, count: 125 })
     );
+    assert_eq!(WrittenRange::new(0xFFFF, 2), Err(past));
+    assert_eq!(RegisterBlock::new(0xFFFF, vec![0; 2]), Err(past));
+    assert!(WrittenRange::new(0xFFFF, 1).is_ok());
+    assert!(RegisterBlock::new(0xFF85, vec![0; 123]).is_ok());
     assert_eq!(request(&[3, 0xFF, 0xFF, 0, 2]), past.into());
     assert_eq!(request(&[4, 0xFF, 0xFF, 0, 2]), past.into());
     assert_eq!(request(&[16, 0xFF, 0xFF, 0, 2, 4, 0, 0, 0, 0]), past.into());
     assert_eq!(reply(&[16, 0xFF, 0xFF, 0, 2]), past.into());
+}
+
+#[test]
+fn a_range_that_was_stored_is_checked_as_a_new_one_is() {
+    let read = |stored: (u16, u16)| {
+        let bytes = postcard::to_stdvec(&stored).unwrap();
+        postcard::from_bytes::<RegisterRange>(&bytes)
+    };
+    let range = RegisterRange::new(0xFFF0, 16).unwrap();
+    assert_eq!(read((0xFFF0, 16)), Ok(range));
+    assert_eq!(
+        postcard::from_bytes(&postcard::to_stdvec(&range).unwrap()),
+        Ok(range)
+    );
+    for stored in [(0, 0), (0, 126), (0xFFFF, 2)] {
+        assert!(read(stored).is_err(), "{stored:?}");
+    }
+}
+
+#[test]
+fn the_longest_request_and_the_longest_reply_fit_a_frame() {
+    // SL 2.3: 256 bytes.
+    let unit = Unit::new(1, UnitRange::Standard).unwrap();
+    let write = Write::Registers(RegisterBlock::new(0, vec![0; 123]).unwrap());
+    let request = encode_request(unit, &Request::Write(write));
+    assert_eq!(request.as_bytes().len(), 255);
+    let reply = encode_reply(
+        unit,
+        &Reply::Normal(Response::Registers {
+            function: ReadFunction::HoldingRegisters,
+            values: ReadValues::new(vec![0; 125]).unwrap(),
+        }),
+    );
+    assert_eq!(reply.as_bytes().len(), 255);
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn functions_have_the_standards_names() {
         (0x2B, "function 0x2B"),
     ];
     for (code, name) in table {
-        let function = FunctionCode::from(code);
+        let function = FunctionCode::try_from(code).unwrap();
         assert_eq!(function.to_string(), name);
         assert_eq!(function.get(), code);
         assert_eq!(function.exception(), code + 0x80);
@@ -39,12 +39,18 @@ fn functions_have_the_standards_names() {
 #[test]
 fn every_code_that_is_no_function_spoken_is_not_handled_in_either_direction() {
     for code in (0..=0x7F).filter(|code| !matches!(code, 3..=8 | 16)) {
-        let error = DecodeError::Function(FunctionCode::Other(code));
+        let function = FunctionCode::try_from(code).unwrap();
+        assert!(matches!(function, FunctionCode::Other(_)));
+        let error = DecodeError::Function(function);
         assert_eq!(request(&[code, 0, 0, 0, 1]), error);
         assert_eq!(reply(&[code, 0, 0, 0, 1]), error);
     }
     for code in 0x80..=0xFF {
-        let error = DecodeError::Function(FunctionCode::Other(code));
+        let error = DecodeError::Field {
+            field: "function code",
+            found: u16::from(code),
+        };
+        assert_eq!(FunctionCode::try_from(code), Err(error));
         assert_eq!(request(&[code, 1]), error);
     }
 }
@@ -80,7 +86,7 @@ fn every_exception_of_every_function_survives_decoding() {
     for function in 0..=0x7F {
         for code in 0..=0xFF {
             let expected = Reply::Exception {
-                function: FunctionCode::from(function),
+                function: FunctionCode::try_from(function).unwrap(),
                 code: ExceptionCode(code),
             };
             assert_eq!(Reply::decode(&[function + 0x80, code]), Ok(expected));

@@ -6,8 +6,8 @@ use meterpoll::codec::rtu::{
 };
 use meterpoll::codec::{
     Broadcast, DecodeError, Destination, ExceptionCode, Frame, FunctionCode, ReadFunction,
-    RegisterAddress, RegisterRange, RegisterValues, Reply, Request, Response, Unit, UnitRange,
-    Write,
+    ReadValues, RegisterAddress, RegisterBlock, RegisterRange, Reply, Request, Response, Unit,
+    UnitRange, Write, WrittenRange,
 };
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
@@ -42,6 +42,10 @@ fn ranges(most: u16) -> impl Strategy<Value = RegisterRange> {
     })
 }
 
+fn written(start: u16, count: u16) -> WrittenRange {
+    WrittenRange::new(start, count).unwrap()
+}
+
 fn registers(most: usize) -> impl Strategy<Value = Vec<u16>> {
     prop::collection::vec(any::<u16>(), 1..=most)
 }
@@ -51,11 +55,9 @@ fn writes() -> impl Strategy<Value = Write> {
         (addresses(), any::<bool>()).prop_map(|(address, on)| Write::Coil { address, on }),
         (addresses(), any::<u16>()).prop_map(|(address, value)| Write::Register { address, value }),
         (ranges(123), registers(123)).prop_map(|(range, values)| {
-            let count = values.len().min(usize::from(range.count()));
-            Write::Registers {
-                start: range.start(),
-                values: RegisterValues::new(values.into_iter().take(count).collect()).unwrap(),
-            }
+            let count = usize::from(range.count());
+            let values = values.into_iter().take(count).collect();
+            Write::Registers(RegisterBlock::new(range.start().get(), values).unwrap())
         }),
     ]
 }
@@ -71,18 +73,22 @@ fn requests() -> impl Strategy<Value = Request> {
 
 fn replies() -> impl Strategy<Value = Reply> {
     let exceptions = (0_u8..=0x7F, any::<u8>()).prop_map(|(function, code)| Reply::Exception {
-        function: FunctionCode::from(function),
+        function: FunctionCode::try_from(function).unwrap(),
         code: ExceptionCode(code),
     });
     let responses = prop_oneof![
-        (functions(), registers(125))
-            .prop_map(|(function, values)| Response::Registers { function, values }),
+        (functions(), registers(125)).prop_map(|(function, values)| Response::Registers {
+            function,
+            values: ReadValues::new(values).unwrap(),
+        }),
         (addresses(), any::<bool>()).prop_map(|(address, on)| Response::Coil { address, on }),
         (addresses(), any::<u16>())
             .prop_map(|(address, value)| Response::Register { address, value }),
         any::<u8>().prop_map(Response::ExceptionStatus),
         any::<u16>().prop_map(Response::QueryData),
-        ranges(123).prop_map(Response::RegistersWritten),
+        ranges(123)
+            .prop_map(|range| written(range.start().get(), range.count()))
+            .prop_map(Response::RegistersWritten),
     ];
     prop_oneof![1 => exceptions, 6 => responses.prop_map(Reply::Normal)]
 }

@@ -181,7 +181,7 @@ fn functions_20_and_21_are_named_as_not_handled_once_their_crc_holds() {
     ] {
         let (address, unit) = open(frame).unwrap();
         assert_eq!((address, unit.first()), (1, Some(&code)));
-        let unknown = DecodeError::Function(FunctionCode::Other(code));
+        let unknown = DecodeError::Function(FunctionCode::try_from(code).unwrap());
         assert_eq!(decode_request(frame), Err(unknown));
         assert_eq!(decode_reply(frame), Err(unknown));
         assert_eq!(

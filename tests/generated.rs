@@ -7,7 +7,7 @@ use std::{env, fs};
 
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
-use meterpoll::cli::Arguments;
+use meterpoll::cli::{Arguments, completion_script};
 
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
@@ -54,9 +54,7 @@ fn completions_say_what_the_program_takes() {
         (Shell::Zsh, "_meterpoll"),
         (Shell::Fish, "meterpoll.fish"),
     ] {
-        let mut script = Vec::new();
-        clap_complete::generate(shell, &mut Arguments::command(), "meterpoll", &mut script);
-        files.insert(file.to_owned(), script);
+        files.insert(file.to_owned(), completion_script(shell));
     }
     check("completions", &files);
 }

@@ -154,13 +154,11 @@ fn the_pqm_leaves_the_factory_at_9600_8n1() {
 #[test]
 fn the_pqm_has_the_limits_of_its_manual() {
     let limits = pqm().limits;
+    let function = |code: u8| FunctionCode::try_from(code).unwrap();
     assert_eq!(limits.units, UnitRange::Extended);
-    assert_eq!(
-        limits.functions,
-        [3, 4, 5, 6, 7, 8, 16].map(FunctionCode::from)
-    );
+    assert_eq!(limits.functions, [3, 4, 5, 6, 7, 8, 16].map(function));
     assert!(limits.interchangeable_reads);
-    assert_eq!(limits.broadcast_functions, [5, 16].map(FunctionCode::from));
+    assert_eq!(limits.broadcast_functions, [5, 16].map(function));
     assert_eq!(limits.read_registers, 125);
     assert_eq!(limits.write_registers, 60);
     assert!(!limits.read_holes);

@@ -191,9 +191,7 @@ fn names_need_a_meter() {
     for selector in ["voltage", "@energy", "*"] {
         assert_eq!(
             complaint(&[selector], None),
-            format!(
-                "'{selector}' is a point's name, and without a meter there are only raw registers"
-            )
+            format!("'{selector}' is no register, and without a meter there are no points")
         );
     }
 }

@@ -38,7 +38,7 @@ fn receive(line: &mut SimulatedLine) -> Vec<u8> {
 fn registers(line: &mut SimulatedLine, request: &[u8]) -> Vec<u16> {
     line.send(request).unwrap();
     match decode_reply(&receive(line)) {
-        Ok((_, Reply::Normal(Response::Registers { values, .. }))) => values,
+        Ok((_, Reply::Normal(Response::Registers { values, .. }))) => values.into_vec(),
         other => panic!("{other:?}"),
     }
 }

@@ -51,7 +51,7 @@ fn read(function: ReadFunction, range: RegisterRange) -> Vec<u16> {
     let frame = encode_request(meter.unit(), &Request::Read { function, range });
     let answer = meter.answer(frame.as_bytes(), now()).unwrap();
     match decode_reply(answer.as_bytes()) {
-        Ok((_, Reply::Normal(Response::Registers { values, .. }))) => values,
+        Ok((_, Reply::Normal(Response::Registers { values, .. }))) => values.into_vec(),
         other => panic!("{range} gave {other:?}"),
     }
 }

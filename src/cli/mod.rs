@@ -1,8 +1,10 @@
 //! What can be typed: definitions of commands and options, nothing that does work, so that
-//! completions, man pages and tests can build it alone.
+//! completions, man pages and tests can build it alone. Everybody else calls [`parse`] and reads
+//! [`Arguments`].
 
 mod line;
 mod read_registers;
+mod usage;
 mod values;
 
 use clap::{ArgAction, Args, Parser, Subcommand};
@@ -10,6 +12,7 @@ use clap_complete::Shell;
 
 pub use line::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
 pub use read_registers::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
+pub use usage::{Usage, completion_script, parse};
 pub use values::Units;
 
 /// Reads electricity meters over Modbus RTU, in points and units.

@@ -5,7 +5,7 @@
 
 use crate::codec::length::{self, Direction};
 use crate::codec::rtu::{self, Frame};
-use crate::codec::{FunctionCode, Reply, Request, Response, Unit};
+use crate::codec::{Reply, Request, Response, Unit};
 
 /// What to make of our own bytes coming back, as they do where a two-wire adapter keeps its
 /// receiver on.
@@ -235,15 +235,19 @@ impl<'a> Expectation<'a> {
             Ok((_, Reply::Exception { function, code })) => {
                 format!("{code} to {function}")
             }
-            Ok((_, Reply::Normal(Response::Registers { function, values })))
-                if FunctionCode::from(function) == self.request.function() =>
-            {
-                let asked = (self.length - (frame.len() - 2 * values.len())) / 2;
-                format!("{} registers where {asked} were asked for", values.len())
-            }
-            Ok((_, Reply::Normal(_))) => frame.get(1).map_or_else(String::new, |code| {
-                format!("an answer to {}", FunctionCode::from(*code))
-            }),
+            Ok((_, Reply::Normal(response))) => match (self.request, response) {
+                (
+                    Request::Read { function, range },
+                    Response::Registers {
+                        function: answered,
+                        values,
+                    },
+                ) if *function == answered => {
+                    let (found, asked) = (values.count(), range.count());
+                    format!("{found} registers where {asked} were asked for")
+                }
+                (_, response) => format!("an answer to {}", response.function()),
+            },
         }
     }
 }
@@ -288,7 +292,7 @@ fn matches(request: &Request, response: &Response) -> bool {
                 function: answered,
                 values,
             },
-        ) => function == answered && values.len() == usize::from(range.count()),
+        ) => function == answered && values.count() == range.count(),
         (
             Request::Write(Write::Coil { address, on }),
             Response::Coil {
@@ -303,8 +307,8 @@ fn matches(request: &Request, response: &Response) -> bool {
                 value: stored,
             },
         ) => address == answered && value == stored,
-        (Request::Write(Write::Registers { start, values }), Response::RegistersWritten(range)) => {
-            range.start() == *start && range.count() == values.count()
+        (Request::Write(Write::Registers(block)), Response::RegistersWritten(range)) => {
+            block.range() == *range
         }
         (Request::ReadExceptionStatus, Response::ExceptionStatus(_)) => true,
         (Request::ReturnQueryData(word), Response::QueryData(answered)) => word == answered,

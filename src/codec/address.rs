@@ -101,6 +101,7 @@ impl fmt::Display for RegisterAddress {
 /// Consecutive registers that one read can ask for: 1 to 125 of them (AP 6.3, 6.4), none past
 /// address 0xFFFF.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "(u16, u16)", into = "(u16, u16)")]
 pub struct RegisterRange {
     start: RegisterAddress,
     count: u16,
@@ -153,43 +154,23 @@ impl RegisterRange {
     }
 }
 
-impl fmt::Display for RegisterRange {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}+{}", self.start, self.count)
+/// A start and a count.
+impl TryFrom<(u16, u16)> for RegisterRange {
+    type Error = AddressError;
+
+    fn try_from((start, count): (u16, u16)) -> Result<Self, AddressError> {
+        Self::new(start, count)
     }
 }
 
-/// Register values that one write of function 16 can carry: 1 to 123 of them (AP 6.12).
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RegisterValues(Vec<u16>);
-
-impl RegisterValues {
-    /// The most registers one write carries (AP 6.12).
-    pub const MOST: u16 = 123;
-
-    /// Checks the number of values.
-    ///
-    /// # Errors
-    /// [`AddressError::Count`] for none or more than 123.
-    pub fn new(values: Vec<u16>) -> Result<Self, AddressError> {
-        if values.is_empty() || values.len() > usize::from(Self::MOST) {
-            return Err(AddressError::Count {
-                what: "write",
-                found: values.len(),
-                most: Self::MOST,
-            });
-        }
-        Ok(Self(values))
+impl From<RegisterRange> for (u16, u16) {
+    fn from(range: RegisterRange) -> Self {
+        (range.start.0, range.count)
     }
+}
 
-    /// The values, in address order.
-    pub fn as_slice(&self) -> &[u16] {
-        &self.0
-    }
-
-    /// How many there are, 1 to 123.
-    pub fn count(&self) -> u16 {
-        // `new` keeps the length at 123 or below.
-        u16::try_from(self.0.len()).unwrap_or(Self::MOST)
+impl fmt::Display for RegisterRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}+{}", self.start, self.count)
     }
 }

@@ -4,9 +4,12 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// A function code, 1 to 127. Codes this crate does not speak survive and print as numbers.
+use super::error::DecodeError;
+
+/// A function code, 0 to 127; the standard gives 0 no meaning. Codes this crate does not speak
+/// survive and print as numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(from = "u8", into = "u8")]
+#[serde(try_from = "u8", into = "u8")]
 pub enum FunctionCode {
     /// 3 (03h), Read Holding Registers (AP 6.3).
     ReadHoldingRegisters,
@@ -23,8 +26,13 @@ pub enum FunctionCode {
     /// 16 (10h), Write Multiple Registers (AP 6.12).
     WriteMultipleRegisters,
     /// Any other code.
-    Other(u8),
+    Other(OtherFunction),
 }
+
+/// A function code, 0 to 127, that is none of those with a name in [`FunctionCode`]; that is where
+/// it is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct OtherFunction(u8);
 
 impl FunctionCode {
     /// The code on the wire of a request or a normal response.
@@ -37,7 +45,7 @@ impl FunctionCode {
             Self::ReadExceptionStatus => 7,
             Self::Diagnostics => 8,
             Self::WriteMultipleRegisters => 16,
-            Self::Other(code) => code,
+            Self::Other(code) => code.0,
         }
     }
 
@@ -60,9 +68,13 @@ impl FunctionCode {
     }
 }
 
-impl From<u8> for FunctionCode {
-    fn from(code: u8) -> Self {
-        match code {
+impl TryFrom<u8> for FunctionCode {
+    type Error = DecodeError;
+
+    /// From 80h on it is no function code but that of an exception response: a
+    /// [`DecodeError::Field`].
+    fn try_from(code: u8) -> Result<Self, DecodeError> {
+        Ok(match code {
             3 => Self::ReadHoldingRegisters,
             4 => Self::ReadInputRegisters,
             5 => Self::WriteSingleCoil,
@@ -70,8 +82,14 @@ impl From<u8> for FunctionCode {
             7 => Self::ReadExceptionStatus,
             8 => Self::Diagnostics,
             16 => Self::WriteMultipleRegisters,
-            other => Self::Other(other),
-        }
+            0x80.. => {
+                return Err(DecodeError::Field {
+                    field: "function code",
+                    found: u16::from(code),
+                });
+            }
+            other => Self::Other(OtherFunction(other)),
+        })
     }
 }
 

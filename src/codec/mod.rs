@@ -4,6 +4,7 @@
 //!
 //! * [`address`]: units, broadcast, register addresses and ranges, each with its limits.
 //! * [`function`] and [`exception`]: the codes of the standard, open to unknown values.
+//! * [`registers`]: the registers that one message carries.
 //! * [`request`] and [`reply`]: protocol data units in both directions.
 //! * [`length`]: how long each frame is, per function and direction.
 //! * [`rtu`]: unit and CRC around a data unit.
@@ -18,15 +19,17 @@ mod error;
 pub mod exception;
 pub mod function;
 pub mod length;
+pub mod registers;
 pub mod reply;
 pub mod request;
 pub mod rtu;
 pub mod value;
 
-pub use address::{Broadcast, RegisterAddress, RegisterRange, RegisterValues, Unit, UnitRange};
+pub use address::{Broadcast, RegisterAddress, RegisterRange, Unit, UnitRange};
 pub use error::{AddressError, DecodeError};
 pub use exception::ExceptionCode;
-pub use function::{FunctionCode, ReadFunction};
+pub use function::{FunctionCode, OtherFunction, ReadFunction};
+pub use registers::{ReadValues, RegisterBlock, WrittenRange};
 pub use reply::{Reply, Response};
 pub use request::{Request, Write};
 pub use rtu::{Destination, Frame};

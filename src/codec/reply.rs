@@ -1,10 +1,11 @@
 //! What a meter says: the protocol data units of responses and exceptions.
 
-use super::address::{RegisterAddress, RegisterRange};
+use super::address::RegisterAddress;
 use super::cursor::Cursor;
 use super::error::DecodeError;
 use super::exception::ExceptionCode;
 use super::function::{FunctionCode, ReadFunction};
+use super::registers::{ReadValues, WrittenRange};
 use super::request::{self, Request, Write};
 
 /// A meter's reply: what was asked for, or why not.
@@ -24,12 +25,12 @@ pub enum Reply {
 /// A normal response.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Response {
-    /// The registers of function 03 or 04, 1 to 125 of them.
+    /// The registers of function 03 or 04.
     Registers {
         /// Which of the two functions answered.
         function: ReadFunction,
         /// The values in address order.
-        values: Vec<u16>,
+        values: ReadValues,
     },
     /// Function 05: the request repeated.
     Coil {
@@ -49,8 +50,8 @@ pub enum Response {
     ExceptionStatus(u8),
     /// Function 08, sub-function 0: the word of the request.
     QueryData(u16),
-    /// Function 16: which registers were written, 1 to 123 of them.
-    RegistersWritten(RegisterRange),
+    /// Function 16: which registers were written.
+    RegistersWritten(WrittenRange),
 }
 
 impl Reply {
@@ -72,10 +73,13 @@ impl Reply {
         let mut fields = Cursor::new(unit);
         let code = fields.u8("function code")?;
         let reply = if code & 0x80 == 0 {
-            Self::Normal(Response::decode(FunctionCode::from(code), &mut fields)?)
+            Self::Normal(Response::decode(
+                FunctionCode::try_from(code)?,
+                &mut fields,
+            )?)
         } else {
             Self::Exception {
-                function: FunctionCode::from(code & 0x7F),
+                function: FunctionCode::try_from(code & 0x7F)?,
                 code: ExceptionCode(fields.u8("exception code")?),
             }
         };
@@ -85,11 +89,23 @@ impl Reply {
 }
 
 impl Response {
+    /// The function code it comes with.
+    pub fn function(&self) -> FunctionCode {
+        match self {
+            Self::Registers { function, .. } => FunctionCode::from(*function),
+            Self::Coil { .. } => FunctionCode::WriteSingleCoil,
+            Self::Register { .. } => FunctionCode::WriteSingleRegister,
+            Self::ExceptionStatus(_) => FunctionCode::ReadExceptionStatus,
+            Self::QueryData(_) => FunctionCode::Diagnostics,
+            Self::RegistersWritten(_) => FunctionCode::WriteMultipleRegisters,
+        }
+    }
+
     fn encode(&self, into: &mut Vec<u8>) {
         match self {
-            Self::Registers { function, values } => {
-                into.push(FunctionCode::from(*function).get());
-                request::push_counted(into, values);
+            Self::Registers { values, .. } => {
+                into.push(self.function().get());
+                request::push_counted(into, values.as_slice());
             }
             // These two repeat their request byte for byte (AP 6.5, 6.6).
             Self::Coil { address, on } => Write::Coil {
@@ -103,11 +119,11 @@ impl Response {
             }
             .encode(into),
             Self::ExceptionStatus(bits) => {
-                into.extend_from_slice(&[FunctionCode::ReadExceptionStatus.get(), *bits]);
+                into.extend_from_slice(&[self.function().get(), *bits]);
             }
             Self::QueryData(word) => Request::ReturnQueryData(*word).encode(into),
             Self::RegistersWritten(range) => {
-                into.push(FunctionCode::WriteMultipleRegisters.get());
+                into.push(self.function().get());
                 request::push(into, range.start().get());
                 request::push(into, range.count());
             }
@@ -133,7 +149,7 @@ impl Response {
             FunctionCode::WriteMultipleRegisters => {
                 let start = fields.u16("starting address")?;
                 let count = fields.u16("quantity of registers")?;
-                Self::RegistersWritten(request::written(start, count)?)
+                Self::RegistersWritten(WrittenRange::new(start, count)?)
             }
             other @ FunctionCode::Other(_) => return Err(DecodeError::Function(other)),
         })
@@ -141,9 +157,6 @@ impl Response {
 }
 
 fn registers(fields: &mut Cursor<'_>, function: ReadFunction) -> Result<Response, DecodeError> {
-    let values = request::counted(fields, "register value")?;
-    // A meter never sends none, nor more than one read can ask for.
-    let count = u16::try_from(values.len()).unwrap_or(u16::MAX);
-    RegisterRange::new(0, count)?;
+    let values = ReadValues::new(request::counted(fields, "register value")?)?;
     Ok(Response::Registers { function, values })
 }

@@ -1,9 +1,10 @@
 //! What a client asks: the protocol data units of requests.
 
-use super::address::{RegisterAddress, RegisterRange, RegisterValues};
+use super::address::{RegisterAddress, RegisterRange};
 use super::cursor::Cursor;
-use super::error::{AddressError, DecodeError};
+use super::error::DecodeError;
 use super::function::{FunctionCode, ReadFunction};
+use super::registers::RegisterBlock;
 
 /// Value field of function 05 for "on" (AP 6.5).
 pub(super) const COIL_ON: u16 = 0xFF00;
@@ -47,12 +48,7 @@ pub enum Write {
         value: u16,
     },
     /// 16 (10h) Write Multiple Registers.
-    Registers {
-        /// The first register.
-        start: RegisterAddress,
-        /// The new values from there on.
-        values: RegisterValues,
-    },
+    Registers(RegisterBlock),
 }
 
 impl Request {
@@ -97,7 +93,7 @@ impl Request {
     /// [`DecodeError`] names the field that is cut, contradictory or out of bounds.
     pub fn decode(unit: &[u8]) -> Result<Self, DecodeError> {
         let mut fields = Cursor::new(unit);
-        let function = FunctionCode::from(fields.u8("function code")?);
+        let function = FunctionCode::try_from(fields.u8("function code")?)?;
         let request = match function {
             FunctionCode::ReadHoldingRegisters => {
                 read(&mut fields, ReadFunction::HoldingRegisters)?
@@ -127,7 +123,7 @@ impl Write {
         match self {
             Self::Coil { .. } => FunctionCode::WriteSingleCoil,
             Self::Register { .. } => FunctionCode::WriteSingleRegister,
-            Self::Registers { .. } => FunctionCode::WriteMultipleRegisters,
+            Self::Registers(_) => FunctionCode::WriteMultipleRegisters,
         }
     }
 
@@ -143,10 +139,10 @@ impl Write {
                 push(into, address.get());
                 push(into, *value);
             }
-            Self::Registers { start, values } => {
-                push(into, start.get());
-                push(into, values.count());
-                push_counted(into, values.as_slice());
+            Self::Registers(block) => {
+                push(into, block.start().get());
+                push(into, block.count());
+                push_counted(into, block.values());
             }
         }
     }
@@ -157,9 +153,14 @@ pub(super) fn push(into: &mut Vec<u8>, field: u16) {
     into.extend_from_slice(&field.to_be_bytes());
 }
 
-/// Appends a byte count and the registers it counts: at most 125, so the count fits its byte.
+/// Appends a byte count and the registers it counts: what a [`RegisterBlock`] or a
+/// [`super::ReadValues`] holds.
 pub(super) fn push_counted(into: &mut Vec<u8>, registers: &[u16]) {
-    into.push(u8::try_from(2 * registers.len()).unwrap_or(u8::MAX));
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "neither type holds more than 125 registers, so there are 250 bytes at most"
+    )]
+    into.push(2 * registers.len() as u8);
     for register in registers {
         push(into, *register);
     }
@@ -208,23 +209,7 @@ fn registers(fields: &mut Cursor<'_>) -> Result<Write, DecodeError> {
             found: count,
         });
     }
-    written(start, count)?;
-    Ok(Write::Registers {
-        start: RegisterAddress(start),
-        values: RegisterValues::new(values)?,
-    })
-}
-
-/// The registers that one message of function 16 writes: fewer than one read can ask for.
-pub(super) const fn written(start: u16, count: u16) -> Result<RegisterRange, AddressError> {
-    if count == 0 || count > RegisterValues::MOST {
-        return Err(AddressError::Count {
-            what: "write",
-            found: count as usize,
-            most: RegisterValues::MOST,
-        });
-    }
-    RegisterRange::new(start, count)
+    Ok(Write::Registers(RegisterBlock::new(start, values)?))
 }
 
 /// A byte count and exactly that many bytes of registers, to the end of the data unit.

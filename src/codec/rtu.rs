@@ -19,7 +19,11 @@ pub fn check(body: &[u8]) -> [u8; 2] {
     CRC.checksum(body).to_le_bytes()
 }
 
-/// A whole frame, at most 256 bytes, ready to be sent in one write. Prints as hex pairs.
+/// A whole frame, ready to be sent in one write. Prints as hex pairs.
+///
+/// It is never longer than the 256 bytes of the standard: it is made of a request or a reply, and
+/// the longest of each hold 250 bytes of registers ([`super::ReadValues`]) behind 2 others, or 246
+/// ([`super::RegisterBlock`]) behind 6. Unit and CRC make that 255.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame(Vec<u8>);
 

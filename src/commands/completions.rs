@@ -1,14 +1,9 @@
 //! `completions`: a shell's completion script.
 
-use clap::CommandFactory;
-use clap_complete::{Shell, generate};
-
 use super::{CommandError, ExitCode, print};
-use crate::cli::Arguments;
+use crate::cli::{self, Completions};
 
-/// Prints the script for `shell`.
-pub(super) fn print_script(shell: Shell) -> Result<ExitCode, CommandError> {
-    let mut script = Vec::new();
-    generate(shell, &mut Arguments::command(), "meterpoll", &mut script);
-    print(&script)
+/// Prints the script for the shell.
+pub(super) fn print_script(arguments: &Completions) -> Result<ExitCode, CommandError> {
+    print(&cli::completion_script(arguments.shell))
 }

@@ -7,6 +7,7 @@ use thiserror::Error;
 use crate::codec::AddressError;
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
+use crate::transport::ports::ListError;
 use crate::transport::{OpenError, TransportError};
 
 /// Why a command cannot do its work at all.
@@ -65,8 +66,8 @@ pub enum CommandError {
     #[error(transparent)]
     Lost(#[from] TransportError),
     /// The ports cannot be listed.
-    #[error("the serial ports cannot be listed")]
-    Ports(#[source] serialport::Error),
+    #[error(transparent)]
+    Ports(#[from] ListError),
     /// Stdout does not take what is written.
     #[error("the output cannot be written")]
     Output(#[source] io::Error),

@@ -14,9 +14,7 @@ mod report;
 use std::ffi::OsString;
 use std::io::{self, Write};
 
-use clap::Parser;
-
-use crate::cli::{Arguments, Command};
+use crate::cli::{self, Command};
 
 use report::Report;
 
@@ -26,9 +24,9 @@ pub use exit_code::ExitCode;
 /// Runs the program with these arguments, the first being its own name, and returns what it ends
 /// with. Readings go to stdout, everything else to stderr.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match cli::parse(arguments) {
         Ok(arguments) => arguments,
-        Err(message) => return report::usage(&message),
+        Err(usage) => return report::usage(&usage),
     };
     logging::start(arguments.verbosity);
     let mut report = Report::new(arguments.verbosity.quiet);
@@ -36,7 +34,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::ReadRegisters(arguments) => read_registers::run(&arguments, &mut report),
         Command::Meters(_) => meters::list(&mut report),
         Command::Ports => ports::list(&report),
-        Command::Completions(arguments) => completions::print_script(arguments.shell),
+        Command::Completions(arguments) => completions::print_script(&arguments),
     };
     result.unwrap_or_else(|error| report.error(&error))
 }

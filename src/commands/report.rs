@@ -6,6 +6,7 @@ use std::fmt;
 use std::io::{self, Write};
 
 use super::{CommandError, ExitCode};
+use crate::cli::Usage;
 use crate::client::Failure;
 use crate::codec::{AddressError, ExceptionCode, Unit};
 use crate::profile::find::FindError;
@@ -13,11 +14,11 @@ use crate::profile::selector::SelectError;
 use crate::readings::Trouble;
 use crate::transport::OpenError;
 
-/// Prints what clap has to say: help on stdout, errors on stderr.
-pub(super) fn usage(message: &clap::Error) -> ExitCode {
-    let printed = message.print();
-    match printed {
-        _ if message.use_stderr() => ExitCode::Usage,
+/// Prints what there is to say to a command line that nothing comes of: help on stdout, errors on
+/// stderr.
+pub(super) fn usage(message: &Usage) -> ExitCode {
+    match message.print() {
+        _ if message.is_error() => ExitCode::Usage,
         Ok(()) => ExitCode::Done,
         Err(cause) => Report::new(false).error(&CommandError::Output(cause)),
     }

@@ -16,7 +16,7 @@ use super::format::{
 };
 use super::model::{Group, Identification, Limits, Profile};
 use super::point::Point;
-use crate::codec::{FunctionCode, ReadFunction, RegisterRange, RegisterValues, UnitRange};
+use crate::codec::{FunctionCode, ReadFunction, RegisterBlock, RegisterRange, UnitRange};
 use crate::transport::{LineSettings, Parity, StopBits};
 
 /// Loads a profile; `file` is how errors name it.
@@ -203,7 +203,7 @@ fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileErr
         write_registers: source.bounded(
             table.write_registers.as_ref(),
             "limits.write_registers",
-            RegisterValues::MOST,
+            RegisterBlock::MOST,
         )?,
         read_holes: table.read_holes,
         table_registers,
@@ -246,9 +246,11 @@ fn function(
     code: &Spanned<u8>,
     key: &str,
 ) -> Result<FunctionCode, ProfileError> {
-    match FunctionCode::from(*code.as_ref()) {
-        FunctionCode::Other(_) => Err(source.value(code, key, "3, 4, 5, 6, 7, 8 or 16")),
-        known => Ok(known),
+    match FunctionCode::try_from(*code.as_ref()) {
+        Ok(FunctionCode::Other(_)) | Err(_) => {
+            Err(source.value(code, key, "3, 4, 5, 6, 7, 8 or 16"))
+        }
+        Ok(known) => Ok(known),
     }
 }
 

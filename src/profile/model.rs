@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::point::Point;
-use crate::codec::{FunctionCode, ReadFunction, RegisterRange, RegisterValues, UnitRange};
+use crate::codec::{FunctionCode, ReadFunction, RegisterBlock, RegisterRange, UnitRange};
 use crate::transport::LineSettings;
 
 /// One meter: what it is, how it is spoken to, and its points.
@@ -68,7 +68,7 @@ impl Default for Limits {
             interchangeable_reads: false,
             broadcast_functions: Vec::new(),
             read_registers: RegisterRange::MOST,
-            write_registers: RegisterValues::MOST,
+            write_registers: RegisterBlock::MOST,
             read_holes: false,
             table_registers: None,
             typical_answer: Duration::ZERO,

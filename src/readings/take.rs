@@ -96,7 +96,7 @@ fn registers(
     patience: Patience,
 ) -> Result<Vec<u16>, Failure> {
     match client.request(unit, &read.request(), patience)? {
-        Response::Registers { values, .. } => Ok(values),
+        Response::Registers { values, .. } => Ok(values.into_vec()),
         // The client believes only what answers the request, and a read is answered by registers.
         other => Err(Failure::Mismatch {
             found: format!("{other:?}"),

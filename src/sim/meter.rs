@@ -7,8 +7,8 @@ use jiff::Timestamp;
 use super::pqm::Pqm;
 use crate::codec::value::encode_integer;
 use crate::codec::{
-    AddressError, DecodeError, ExceptionCode, Frame, FunctionCode, ReadFunction, RegisterRange,
-    Reply, Request, Response, Unit, Write, rtu,
+    AddressError, DecodeError, ExceptionCode, Frame, FunctionCode, ReadFunction, ReadValues,
+    RegisterRange, Reply, Request, Response, Unit, Write, rtu,
 };
 use crate::profile::{Point, Profile, builtin};
 
@@ -84,11 +84,8 @@ impl Meter {
         if address != self.unit.get() {
             return None;
         }
-        let function = FunctionCode::from(*data_unit.first()?);
         // From 80h on it is the exception response of somebody with the same number.
-        if function.get() >= 0x80 {
-            return None;
-        }
+        let function = FunctionCode::try_from(*data_unit.first()?).ok()?;
         let reply = match self.obey(function, data_unit, now) {
             Ok(response) => Reply::Normal(response),
             Err(Refusal::Exception(code)) => Reply::Exception { function, code },
@@ -114,9 +111,7 @@ impl Meter {
             }
             Request::ReadExceptionStatus => Ok(Response::ExceptionStatus(self.model.status(now))),
             Request::ReturnQueryData(0) => Ok(Response::QueryData(0)),
-            Request::Write(Write::Registers { values, .. })
-                if values.count() > limits.write_registers =>
-            {
+            Request::Write(Write::Registers(block)) if block.count() > limits.write_registers => {
                 Err(ExceptionCode::ILLEGAL_DATA_VALUE.into())
             }
             // Nothing here can be written yet.
@@ -153,7 +148,11 @@ impl Meter {
                 }
             }
         }
-        Ok(Response::Registers { function, values })
+        Ok(Response::Registers {
+            function,
+            // As many as the range, which is never too long for a read.
+            values: ReadValues::new(values).map_err(DecodeError::from)?,
+        })
     }
 
     /// The points that this function can read and that share registers with `range`.
@@ -199,10 +198,6 @@ impl From<DecodeError> for Refusal {
                 ExceptionCode::ILLEGAL_DATA_ADDRESS.into()
             }
             DecodeError::Address(_) | DecodeError::Field { .. } => {
-                ExceptionCode::ILLEGAL_DATA_VALUE.into()
-            }
-            // An odd count of bytes that are all there.
-            DecodeError::ByteCount { found, expected } if usize::from(found) == expected => {
                 ExceptionCode::ILLEGAL_DATA_VALUE.into()
             }
             DecodeError::ByteCount { .. }

@@ -3,11 +3,12 @@
 //! A [`Transport`] is a medium: the [`serial`] port, or the simulated line in [`crate::sim`].
 //! [`traced`] wraps any of them and shows the bytes. [`line::Line`] adds what the standard asks of
 //! everybody on a wire: silence before each frame. [`clock`] is where time comes from, so that all
-//! of this runs on a fake one in tests.
+//! of this runs on a fake one in tests. [`ports`] tells which serial ports there are.
 
 pub mod clock;
 pub mod error;
 pub mod line;
+pub mod ports;
 pub mod serial;
 pub mod settings;
 pub mod traced;

@@ -2,7 +2,9 @@
 //!
 //! What its error kinds mislead about, on Linux: "not there" and "busy" are both `NoDevice` or
 //! `NotFound`, so the path is looked at first; a port that hung up gives `BrokenPipe`, `Unknown` or
-//! an empty read, so any failure but a time-out or a signal counts as loss.
+//! an empty read, so any failure but a time-out or a signal counts as loss. On Windows "not there"
+//! and "busy" are both `NoDevice` and nothing tells them apart, so there the system's own words
+//! have to do.
 
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -134,6 +136,11 @@ fn kind_of_file(found: &std::fs::Metadata) -> Option<&'static str> {
 fn open_error(name: &str, settings: LineSettings, error: serialport::Error) -> OpenError {
     let port = name.to_owned();
     match error.kind() {
+        // Windows says so for a port that is not there as well as for one in use.
+        ErrorKind::NoDevice if cfg!(windows) => OpenError::Other {
+            port,
+            source: error.into(),
+        },
         // The path was there a moment ago, so this is the lock.
         ErrorKind::NoDevice => OpenError::Busy { port },
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => not_permitted(port),

@@ -1,8 +1,8 @@
 //! What each frame of the four meters says, in one direction or in both.
 
 use meterpoll::codec::{
-    Destination, ExceptionCode, FunctionCode, ReadFunction, RegisterAddress, RegisterRange,
-    RegisterValues, Reply, Request, Response, Unit, UnitRange, Write,
+    Destination, ExceptionCode, FunctionCode, ReadFunction, ReadValues, RegisterAddress,
+    RegisterBlock, RegisterRange, Reply, Request, Response, Unit, UnitRange, Write, WrittenRange,
 };
 
 use super::frames::{em2x, pm290, pqm};
@@ -80,7 +80,7 @@ fn read(function: ReadFunction, start: u16, count: u16) -> Request {
 fn registers(function: ReadFunction, values: &[u16]) -> Response {
     Response::Registers {
         function,
-        values: values.to_vec(),
+        values: ReadValues::new(values.to_vec()).unwrap(),
     }
 }
 
@@ -99,10 +99,7 @@ fn register(address: u16, value: u16) -> Write {
 }
 
 fn many(start: u16, values: &[u16]) -> Write {
-    Write::Registers {
-        start: RegisterAddress(start),
-        values: RegisterValues::new(values.to_vec()).unwrap(),
-    }
+    Write::Registers(RegisterBlock::new(start, values.to_vec()).unwrap())
 }
 
 fn operates(frame: &'static [u8], number: u16, operation: u16) -> Message {
@@ -143,7 +140,7 @@ fn stored_many(frame: &'static [u8], number: u16, start: u16, count: u16) -> Mes
     answers(
         frame,
         number,
-        Response::RegistersWritten(range(start, count)),
+        Response::RegistersWritten(WrittenRange::new(start, count).unwrap()),
     )
 }
 

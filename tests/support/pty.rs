@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 
 use meterpoll::codec::length::{self, Direction};
 use meterpoll::codec::{
-    Destination, ExceptionCode, Reply, Request, Response, Unit, UnitRange, rtu,
+    Destination, ExceptionCode, ReadValues, Reply, Request, Response, Unit, UnitRange, rtu,
 };
 use rustix::fs::{Mode, OFlags, open};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
@@ -131,7 +131,8 @@ pub(crate) fn answer(unit: u16, request: &[u8]) -> Option<Vec<u8>> {
             let first = range.start().get();
             Reply::Normal(Response::Registers {
                 function,
-                values: (first..first + range.count()).map(register).collect(),
+                values: ReadValues::new((first..first + range.count()).map(register).collect())
+                    .expect("as many as were asked for"),
             })
         }
         other => Reply::Exception {

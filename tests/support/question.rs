@@ -6,8 +6,8 @@ use meterpoll::client::Echo;
 use meterpoll::client::belief::{Evidence, Expectation, Verdict};
 use meterpoll::codec::rtu::{self, Frame};
 use meterpoll::codec::{
-    ExceptionCode, FunctionCode, ReadFunction, RegisterRange, Reply, Request, Response, Unit,
-    UnitRange,
+    ExceptionCode, FunctionCode, ReadFunction, ReadValues, RegisterRange, Reply, Request, Response,
+    Unit, UnitRange,
 };
 
 fn unit(number: u16) -> Unit {
@@ -24,7 +24,7 @@ pub(crate) fn read(start: u16, count: u16) -> Request {
 pub(crate) fn registers(values: &[u16]) -> Reply {
     Reply::Normal(Response::Registers {
         function: ReadFunction::HoldingRegisters,
-        values: values.to_vec(),
+        values: ReadValues::new(values.to_vec()).expect("1 to 125 values"),
     })
 }
 

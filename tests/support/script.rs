@@ -9,7 +9,9 @@ use std::time::Duration;
 
 use meterpoll::client::{Client, Echo};
 use meterpoll::codec::rtu::{self, Destination};
-use meterpoll::codec::{ReadFunction, RegisterRange, Reply, Request, Response, Unit, UnitRange};
+use meterpoll::codec::{
+    ReadFunction, ReadValues, RegisterRange, Reply, Request, Response, Unit, UnitRange,
+};
 use meterpoll::transport::{Clock, Line, LineSettings, Timing, Transport, TransportError};
 
 use super::clock::FakeClock;
@@ -285,14 +287,17 @@ pub(crate) fn truth(unit: u8, address: u16) -> u16 {
     address.wrapping_mul(40_503) ^ (u16::from(unit) << 8)
 }
 
+/// What `count` registers hold.
+fn truths(unit: Unit, start: u16, count: u16) -> ReadValues {
+    let values = (0..count).map(|index| truth(unit.get(), start + index));
+    ReadValues::new(values.collect()).expect("1 to 125 registers")
+}
+
 /// The response that a read of `count` registers has to have.
 pub(crate) fn true_response(unit: Unit, start: u16, count: u16) -> Response {
-    let values = (start..start + count)
-        .map(|address| truth(unit.get(), address))
-        .collect();
     Response::Registers {
         function: ReadFunction::HoldingRegisters,
-        values,
+        values: truths(unit, start, count),
     }
 }
 
@@ -303,9 +308,7 @@ pub(crate) fn true_reply(frame: &[u8]) -> Vec<u8> {
     else {
         panic!("no read: {}", rtu::Hex(frame));
     };
-    let values = (0..range.count())
-        .map(|index| truth(unit.get(), range.start().get() + index))
-        .collect();
+    let values = truths(unit, range.start().get(), range.count());
     reply(unit, Response::Registers { function, values })
 }
 
