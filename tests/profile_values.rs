@@ -186,8 +186,8 @@ fn text_runs_in_the_order_of_addresses_and_only_its_bytes_can_be_swapped() {
 }
 
 #[test]
-fn characters_that_are_not_ascii_read_as_question_marks() {
-    assert_eq!(shown("type = \"ascii/2\"", &[0xB041]), "?A");
+fn bytes_of_text_that_are_not_ascii_read_as_hex() {
+    assert_eq!(shown("type = \"ascii/2\"", &[0xB041]), "\\xB0A");
 }
 
 #[test]

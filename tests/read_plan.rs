@@ -269,6 +269,13 @@ fn a_read_does_not_run_over_a_point_that_must_be_alone() {
 }
 
 #[test]
+fn a_register_that_means_something_else_when_alone_is_read_both_ways() {
+    // The second word of a voltage, and an identification code when it is read by itself.
+    let voltages = [point(8, 2), point(10, 2), alone(11), point(12, 2)];
+    assert_eq!(reads(&voltages, &Limits::default()), [(8, 6), (11, 1)]);
+}
+
+#[test]
 fn functions_are_kept_apart() {
     let input = |start| Point {
         function: Some(ReadFunction::InputRegisters),
@@ -336,8 +343,13 @@ fn legal(group: &[&Point], all: &[Point], limits: &Limits) -> Option<u32> {
             .iter()
             .any(|p| (u32::from(p.range.start().get())..p.range.end()).contains(&register))
     };
+    let is_shared = |point: &Point| {
+        all.iter()
+            .any(|other| !other.alone && other.range.contains(point.range))
+    };
     let is_crossed = |point: &Point| {
         point.alone
+            && !is_shared(point)
             && u32::from(point.range.start().get()) < end
             && point.range.end() > u32::from(start)
     };
@@ -346,7 +358,8 @@ fn legal(group: &[&Point], all: &[Point], limits: &Limits) -> Option<u32> {
             .table_registers
             .map(|size| register / u32::from(size))
     };
-    let fits = count <= u32::from(limits.read_registers)
+    let fits = !group.iter().any(|point| point.alone)
+        && count <= u32::from(limits.read_registers)
         && (limits.read_holes || (u32::from(start)..end).all(covered))
         && table(u32::from(start)) == table(end - 1)
         && !all.iter().any(is_crossed);

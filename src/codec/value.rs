@@ -228,7 +228,7 @@ pub enum Raw {
     Double(f64),
     /// One register as it is, for hex and bits.
     Word(u16),
-    /// Text: trailing spaces and NULs are dropped, what is not ASCII shows as `?`.
+    /// Text: trailing spaces and NULs are dropped, what is not ASCII shows as `\xE9`.
     Text(String),
     /// A time of day.
     Time(jiff::civil::Time),
@@ -370,15 +370,18 @@ fn text(kind: RegisterType, order: ByteOrder, registers: &[u16]) -> String {
             }
         })
         .take(usize::from(characters))
-        .map(|byte| {
-            if byte.is_ascii() {
-                char::from(byte)
-            } else {
-                '?'
-            }
-        })
+        .flat_map(shown)
         .collect();
     text.trim_end_matches([' ', '\0']).to_owned()
+}
+
+/// A byte of text: itself in ASCII, else `\xE9`, so that no two bytes look the same.
+fn shown(byte: u8) -> Vec<char> {
+    if byte.is_ascii() {
+        vec![char::from(byte)]
+    } else {
+        format!("\\x{byte:02X}").chars().collect()
+    }
 }
 
 /// Writes an integer into registers; the inverse of [`decode`] for integers, hex and bits, and

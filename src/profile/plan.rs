@@ -86,7 +86,7 @@ impl Plan {
             .collect();
         let rules = Rules {
             limits,
-            apart: sorted.iter().filter(|spot| spot.alone).copied().collect(),
+            apart: apart(&sorted),
         };
         for spot in &mut sorted {
             spot.alone |= !rules.allow_company(spot.function, spot.range);
@@ -114,8 +114,20 @@ struct Spot {
 /// checked it against the limits, and for raw registers the meter has the last word.
 struct Rules<'a> {
     limits: &'a Limits,
-    /// The points that must be alone: no read of others runs over their registers.
+    /// The points that must be alone and whose registers no read of others runs over.
     apart: Vec<Spot>,
+}
+
+/// The points that must be alone, but for those whose registers belong to an ordinary point as
+/// well: such registers mean one thing to a read of their own and another in company.
+fn apart(spots: &[Spot]) -> Vec<Spot> {
+    let is_shared = |alone: &Spot| {
+        spots.iter().any(|spot| {
+            !spot.alone && spot.function == alone.function && spot.range.contains(alone.range)
+        })
+    };
+    let alone = spots.iter().filter(|spot| spot.alone);
+    alone.filter(|spot| !is_shared(spot)).copied().collect()
 }
 
 impl Rules<'_> {
@@ -146,7 +158,8 @@ fn cheapest(spots: &[Spot], rules: &Rules<'_>, cost: Cost) -> Vec<PlannedRead> {
         for (last, range) in reads_from(&spots[first..], rules) {
             let total = so_far + cost.of(u32::from(range.count()));
             let after = &mut best[first + last + 1];
-            if total < after.0 {
+            // Of plans that cost the same, the one that fills its first reads.
+            if total <= after.0 {
                 *after = (total, first);
             }
         }
