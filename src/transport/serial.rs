@@ -189,10 +189,13 @@ fn not_permitted(port: String) -> OpenError {
     } else {
         groups.join(", ")
     };
-    let owner = group.as_deref().unwrap_or("an unknown group");
+    let owner = group.as_ref().map_or_else(
+        || "an unknown group".to_owned(),
+        |group| format!("group {group}"),
+    );
     OpenError::NotPermitted {
         port,
-        who: format!("it belongs to group {owner}, and user {user} is in {member}"),
+        who: format!("it belongs to {owner}, and user {user} is in {member}"),
         group,
     }
 }

@@ -47,14 +47,14 @@ impl PtyMeter {
                     Err(error) if error.kind() == ErrorKind::TimedOut => continue,
                     Err(_) => return,
                 }
-                if length::of_frame(&bytes, Direction::Request) == Some(bytes.len()) {
-                    requests
-                        .lock()
-                        .expect("nobody panicked")
-                        .push(bytes.clone());
-                    let answer = behaviour(&bytes);
+                // Two requests can come in one read when the machine is busy.
+                while let Some(length) = length::of_frame(&bytes, Direction::Request)
+                    && length <= bytes.len()
+                {
+                    let request: Vec<u8> = bytes.drain(..length).collect();
+                    let answer = behaviour(&request);
+                    requests.lock().expect("nobody panicked").push(request);
                     let _ = master.write_all(&answer);
-                    bytes.clear();
                 }
             }
         });
