@@ -33,9 +33,9 @@ complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "meters" -d 'Lis
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "ports" -d 'List serial ports, without opening any'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "completions" -d 'Print a shell\'s completion script'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s a -l unit -l unit-id -l slave -d 'The units to read: 17, or 1,2,5-9' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s a -l unit -d 'The units to read: 17, or 1,2,5-9; --unit-id and --slave mean the same' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l meter -d 'The meter: a name that `meters list` shows, or a profile file' -r
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l function -d 'The function to read with, for meters whose registers 03 and 04 differ [default: what the meter wants, else 3]' -r -f -a "3\t'Read Holding Registers'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l function -d 'The function raw registers are read with; a meter\'s points as well where it takes both for one [default: what the meter wants, else 3]' -r -f -a "3\t'Read Holding Registers'
 4\t'Read Input Registers'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l numbering -d 'How register numbers are written' -r -f -a "protocol\t'Addresses as on the wire, from 0'
 modicon\t'30001 or 300001 for input registers, 40001 or 400001 for holding registers'"
@@ -43,9 +43,9 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s f
 csv\t'Comma-separated values with a header'
 json\t'One array of objects, one a reading'
 jsonl\t'One object a line, one a reading'"
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l layout -d 'Shape of CSV' -r -f -a "wide\t'A row a meter, a column a point'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l layout -d 'Shape of CSV [default: wide]' -r -f -a "wide\t'A row a meter, a column a point'
 long\t'A row a reading'"
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
 even\t'Even parity, the standard\'s default'
@@ -53,7 +53,7 @@ odd\t'Odd parity'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
 2\t'Two stop bits'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms [default: the meter\'s longest answer time, else 1s]' -r
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l retries -d 'How often a read is repeated when the line fails' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l wait -d 'How long to wait for a port that another program holds' -r

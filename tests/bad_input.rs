@@ -49,7 +49,7 @@ fn a_unit_that_is_no_number_is_refused() {
         .code(2)
         .stderr(
             "error: invalid value 'one' for '--unit <UNITS>': 'one' is no unit: a number from 1 \
-             to 247, or a list such as 1,2,5-9\n\n\
+             to 255, or a list such as 1,2,5-9\n\n\
              For more information, try '--help'.\n",
         )
         .run();
@@ -71,7 +71,7 @@ fn an_address_past_65535_is_refused() {
     Program::new("read-registers -p sim: -a 1 65536")
         .code(2)
         .stderr(
-            "error: '65536': '65536' is no number from 0 to 65535, or 0x0 to 0xFFFF\n\
+            "error: '65536' is no number from 0 to 65535, or 0x0 to 0xFFFF\n\
              hint: registers are written 0x006B, 107, 0x6B+3 or 0x11F:u32/CDAB*0.1=kWh\n",
         )
         .run();
@@ -170,8 +170,7 @@ fn a_name_without_a_meter_is_refused() {
     Program::new("read-registers -p sim: -a 1 current_a")
         .code(2)
         .stderr(
-            "error: 'current_a' is a point's name, and without a meter there are only raw \
-             registers\n\
+            "error: 'current_a' is no register, and without a meter there are no points\n\
              hint: name the meter with --meter, or registers as 0x0000+10\n",
         )
         .run();

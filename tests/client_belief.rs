@@ -68,8 +68,14 @@ fn a_valid_frame_of_the_unit_that_answers_something_else_is_a_mismatch() {
             reply_frame(0x11, &Reply::Normal(input)),
             "an answer to function 04 (Read Input Registers)",
         ),
-        (reply_frame(0x11, &registers(&[1, 2])), "2 registers"),
-        (reply_frame(0x11, &registers(&[1, 2, 3, 4])), "4 registers"),
+        (
+            reply_frame(0x11, &registers(&[1, 2])),
+            "2 registers where 3 were asked for",
+        ),
+        (
+            reply_frame(0x11, &registers(&[1, 2, 3, 4])),
+            "4 registers where 3 were asked for",
+        ),
         (
             framed(&[0x11, 0x03, 0x00]),
             "a malformed frame: 0 registers: a read carries 1 to 125",

@@ -29,6 +29,7 @@ const fn ms(milliseconds: u64) -> Duration {
 const fn patience(retries: u32) -> Patience {
     Patience {
         timeout: T,
+        longest_answer: T,
         retries,
         pause: Duration::ZERO,
     }
@@ -356,7 +357,7 @@ fn frames_of_other_units_are_dropped_while_the_time_runs_on() {
     let start = bench.now();
     assert_eq!(
         bench.failure(0).to_string(),
-        "no answer within 1s, only 1 frames of other units"
+        "no answer within 1s, only 1 frame of other units"
     );
     assert_eq!(bench.now(), start + SILENCE + REQUEST + T);
 }
@@ -388,7 +389,7 @@ fn an_answer_to_something_else_is_named_when_the_time_is_up() {
     let mut bench = meeting(answered(0x6B, 2));
     assert_eq!(
         bench.failure(0).to_string(),
-        "the unit answered something else: 2 registers"
+        "the unit answered something else: 2 registers where 3 were asked for"
     );
     assert_eq!(bench.now(), SILENCE + REQUEST + T);
 }

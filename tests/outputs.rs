@@ -4,7 +4,7 @@ use jiff::Timestamp;
 use meterpoll::codec::value::{ByteOrder, RegisterType};
 use meterpoll::codec::{ExceptionCode, RegisterRange, Unit, UnitRange};
 use meterpoll::output::csv::CsvStyle;
-use meterpoll::output::{Json, JsonLines, LongCsv, Sink, Table, WideCsv};
+use meterpoll::output::{Heading, Json, JsonLines, LongCsv, Sink, Table, WideCsv};
 use meterpoll::profile::{Point, Value};
 use meterpoll::readings::{Fault, Row};
 
@@ -175,7 +175,12 @@ fn on_a_terminal_text_from_a_meter_cannot_steer_it() {
          2026-11-22T04:16:33.123Z,mine,1,ok,\\u{1b}[2Jgone\\u{7}\n"
     );
     let mut table = Vec::new();
-    printed(|out| Table::new(out, None), &mut table, &points, &rows);
+    printed(
+        |out| Table::new(out, Heading::None),
+        &mut table,
+        &points,
+        &rows,
+    );
     assert_eq!(
         String::from_utf8(table).expect("text"),
         "POINT               VALUE  UNIT\na      \\u{1b}[2Jgone\\u{7}\n"
@@ -200,8 +205,10 @@ fn a_table_marks_unverified_points_and_says_what_is_missing() {
         ],
     )];
     let mut out = Vec::new();
-    let line = Some("/dev/ttyUSB0 at 9600 8N1".to_owned());
-    printed(|out| Table::new(out, line), &mut out, &points, &rows);
+    let heading = Heading::Full {
+        line: "/dev/ttyUSB0 at 9600 8N1".to_owned(),
+    };
+    printed(|out| Table::new(out, heading), &mut out, &points, &rows);
     assert_eq!(
         String::from_utf8(out).expect("text"),
         "mine, unit 17 on /dev/ttyUSB0 at 9600 8N1, 2026-11-22 04:16:33 UTC\n\

@@ -405,7 +405,7 @@ fn a_duration_needs_a_unit() {
         refused(
             &with(&format!("[limits]\n{key} = \"500\"")),
             &format!(
-                "m.toml:5: limits.{key}: \"500\" is not a duration with its unit, such as \"500ms\""
+                "m.toml:5: limits.{key}: \"500\" is not a duration with its unit, such as \"500ms\", at most 24h"
             ),
         );
         refused(

@@ -5,11 +5,15 @@ use std::str::FromStr;
 use meterpoll::codec::value::{ByteOrder, RegisterType};
 use meterpoll::codec::{ReadFunction, RegisterRange};
 use meterpoll::profile::Point;
-use meterpoll::profile::selector::{Numbering, SelectError, select};
+use meterpoll::profile::selector::{Numbering, Reading, SelectError, select};
 use rust_decimal::Decimal;
 
 fn chosen(selector: &str, numbering: Numbering) -> Result<Vec<Point>, SelectError> {
-    select(&[selector.to_owned()], numbering, None)
+    let reading = Reading {
+        numbering,
+        ..Reading::default()
+    };
+    select(&[selector.to_owned()], reading)
 }
 
 fn raw(selector: &str, numbering: Numbering) -> Vec<Point> {
@@ -165,9 +169,14 @@ fn what_is_no_number_is_named() {
         ("107+65536", "65536"),
         ("1 07", "1 07"),
     ] {
+        let whole = if selector == number {
+            String::new()
+        } else {
+            format!("'{selector}': ")
+        };
         assert_eq!(
             raw_complaint(selector),
-            format!("'{selector}': '{number}' is no number from 0 to 65535, or 0x0 to 0xFFFF")
+            format!("{whole}'{number}' is no number from 0 to 65535, or 0x0 to 0xFFFF")
         );
     }
 }
@@ -272,7 +281,7 @@ fn what_is_no_modicon_number_is_told_what_is() {
         assert_eq!(
             modicon_complaint(number),
             format!(
-                "'{number}': '{number}' is no register in Modicon numbering: 30001 to 39999 or \
+                "'{number}' is no register in Modicon numbering: 30001 to 39999 or \
                  300001 to 365536 for input registers, 40001 to 49999 or 400001 to 465536 for \
                  holding registers"
             )
@@ -289,4 +298,27 @@ fn without_modicon_numbering_40001_is_an_address() {
     let points = raw("40001", Numbering::Protocol);
     assert_eq!(points, [plain(0x9C41, RegisterType::U16, ByteOrder::Abcd)]);
     assert_eq!(points[0].function, None);
+}
+
+#[test]
+fn a_modicon_number_and_the_other_function_contradict_each_other() {
+    let reading = Reading {
+        numbering: Numbering::Modicon,
+        function: Some(ReadFunction::HoldingRegisters),
+        profile: None,
+    };
+    let error = select(&["30577".to_owned()], reading).expect_err("a contradiction");
+    assert_eq!(
+        error.to_string(),
+        "'30577' is read with function 04, and function 03 was asked for"
+    );
+}
+
+#[test]
+fn a_factor_that_would_be_rounded_is_none() {
+    let factor = "0.00000000000000000000000000019999";
+    assert_eq!(
+        raw_complaint(&format!("0x10*{factor}")),
+        format!("'0x10*{factor}': '{factor}' is no factor, such as 0.1")
+    );
 }

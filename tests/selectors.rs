@@ -3,7 +3,7 @@
 use meterpoll::codec::RegisterRange;
 use meterpoll::codec::value::{ByteOrder, RegisterType};
 use meterpoll::profile::load::load;
-use meterpoll::profile::selector::{Numbering, select};
+use meterpoll::profile::selector::{Reading, select};
 use meterpoll::profile::{Point, Profile};
 
 const BENCH_METER: &str = r#"
@@ -24,6 +24,14 @@ points = [
 ]
 "#;
 
+/// Selectors name points of this meter.
+fn meter(profile: &Profile) -> Reading<'_> {
+    Reading {
+        profile: Some(profile),
+        ..Reading::default()
+    }
+}
+
 fn bench_meter() -> Profile {
     load("bench.toml", BENCH_METER).expect("the profile loads")
 }
@@ -37,7 +45,7 @@ fn typed(selectors: &[&str]) -> Vec<String> {
 
 /// Names of the points of the bench meter that are chosen.
 fn names(selectors: &[&str]) -> Vec<String> {
-    select(&typed(selectors), Numbering::Protocol, Some(&bench_meter()))
+    select(&typed(selectors), meter(&bench_meter()))
         .unwrap_or_else(|error| panic!("{error}"))
         .into_iter()
         .map(|point| point.name)
@@ -46,7 +54,13 @@ fn names(selectors: &[&str]) -> Vec<String> {
 
 /// What is said about selectors that choose nothing.
 fn complaint(selectors: &[&str], profile: Option<&Profile>) -> String {
-    match select(&typed(selectors), Numbering::Protocol, profile) {
+    match select(
+        &typed(selectors),
+        Reading {
+            profile,
+            ..Reading::default()
+        },
+    ) {
         Ok(points) => panic!("chosen: {points:?}"),
         Err(error) => error.to_string(),
     }
@@ -61,7 +75,7 @@ fn register(start: u16, kind: RegisterType) -> Point {
 #[test]
 fn a_name_chooses_its_point() {
     let profile = bench_meter();
-    let chosen = select(&typed(&["voltage"]), Numbering::Protocol, Some(&profile));
+    let chosen = select(&typed(&["voltage"]), meter(&profile));
     let voltage = profile.point("voltage").expect("it is there");
     assert_eq!(chosen, Ok(vec![voltage.clone()]));
 }
@@ -107,17 +121,13 @@ fn a_point_chosen_twice_comes_once() {
         names(&["current_b", "current_*", "@default", "current_b"]),
         ["current_b", "current_a", "current_n", "voltage"]
     );
-    let registers = select(
-        &typed(&["0x6B", "107", "0x006b"]),
-        Numbering::Protocol,
-        None,
-    );
+    let registers = select(&typed(&["0x6B", "107", "0x006b"]), Reading::default());
     assert_eq!(registers, Ok(vec![register(0x6B, RegisterType::U16)]));
 }
 
 #[test]
 fn one_register_as_two_types_is_two_points() {
-    let chosen = select(&typed(&["0x6B:u16", "0x6B:i16"]), Numbering::Protocol, None);
+    let chosen = select(&typed(&["0x6B:u16", "0x6B:i16"]), Reading::default());
     assert_eq!(
         chosen,
         Ok(vec![
@@ -181,9 +191,7 @@ fn names_need_a_meter() {
     for selector in ["voltage", "@energy", "*"] {
         assert_eq!(
             complaint(&[selector], None),
-            format!(
-                "'{selector}' is a point's name, and without a meter there are only raw registers"
-            )
+            format!("'{selector}' is no register, and without a meter there are no points")
         );
     }
 }
@@ -200,4 +208,16 @@ fn nothing_typed_and_nothing_to_fall_back_to_is_an_error() {
         complaint(&[], Some(&profile)),
         "nothing to read: bench has no group @default, so name points"
     );
+}
+
+#[test]
+fn a_point_keeps_the_type_its_meter_gives_it() {
+    for selector in ["voltage:u16", "voltage=kV"] {
+        let profile = bench_meter();
+        let error = select(&typed(&[selector]), meter(&profile)).expect_err("no register");
+        assert_eq!(
+            error.to_string(),
+            format!("'{selector}': voltage has its type and unit from the meter's profile")
+        );
+    }
 }

@@ -2,17 +2,25 @@
 
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, value_parser};
 
-use super::values::{baud, duration};
+use super::values::{baud, duration, timeout};
 
 /// The port, its setting and how patient to be.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Line")]
 pub struct LineArguments {
-    /// Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line
-    #[arg(short, long, env = "METERPOLL_PORT", value_name = "PORT")]
-    pub port: String,
+    /// Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable
+    /// `METERPOLL_PORT` serves as well
+    #[arg(
+        short,
+        long,
+        env = "METERPOLL_PORT",
+        hide_env = true,
+        value_name = "PORT",
+        required_unless_present = "dry_run"
+    )]
+    pub port: Option<String>,
     /// Speed in bits a second [default: the meter's factory setting, else 9600]
     #[arg(short, long, value_name = "BAUD", value_parser = baud)]
     pub baud: Option<u32>,
@@ -24,10 +32,10 @@ pub struct LineArguments {
     pub stop_bits: Option<StopBitsChoice>,
     /// How long a meter may take to begin its answer, such as 500ms [default: the meter's longest
     /// answer time, else 1s]
-    #[arg(short, long, value_name = "TIME", value_parser = duration)]
+    #[arg(short, long, value_name = "TIME", value_parser = timeout)]
     pub timeout: Option<Duration>,
-    /// How often a read is repeated when the line fails
-    #[arg(long, value_name = "COUNT", default_value_t = 2)]
+    /// How often a read is repeated when the line fails, at most 100 times
+    #[arg(long, value_name = "COUNT", default_value_t = 2, value_parser = value_parser!(u32).range(..=100))]
     pub retries: u32,
     /// Least time between the end of an answer and the next request [default: what the meter
     /// wants; 3.5 characters of silence are kept always]

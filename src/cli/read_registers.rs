@@ -33,14 +33,14 @@ Always: registers by protocol address, from 0:
   0x11F:u32*0.1=kWh   a factor and a unit"
     )]
     pub what: Vec<String>,
-    /// The units to read: 17, or 1,2,5-9
-    #[arg(short = 'a', long, visible_aliases = ["unit-id", "slave"], value_name = "UNITS")]
+    /// The units to read: 17, or 1,2,5-9; --unit-id and --slave mean the same
+    #[arg(short = 'a', long, aliases = ["unit-id", "slave"], value_name = "UNITS")]
     pub unit: Units,
     /// The meter: a name that `meters list` shows, or a profile file
     #[arg(long, value_name = "METER")]
     pub meter: Option<String>,
-    /// The function to read with, for meters whose registers 03 and 04 differ
-    /// [default: what the meter wants, else 3]
+    /// The function raw registers are read with; a meter's points as well where it takes both for
+    /// one [default: what the meter wants, else 3]
     #[arg(long, value_name = "CODE")]
     pub function: Option<FunctionChoice>,
     /// How register numbers are written
@@ -49,9 +49,9 @@ Always: registers by protocol address, from 0:
     /// How readings are printed
     #[arg(short, long, value_name = "FORMAT", default_value = "table")]
     pub format: FormatChoice,
-    /// Shape of CSV
-    #[arg(long, value_name = "SHAPE", default_value = "wide")]
-    pub layout: Layout,
+    /// Shape of CSV [default: wide]
+    #[arg(long, value_name = "SHAPE")]
+    pub layout: Option<Layout>,
     /// Put units into the header of wide CSV
     #[arg(long)]
     pub units: bool,

@@ -3,22 +3,36 @@
 use std::str::FromStr;
 use std::time::Duration;
 
-/// A duration with its unit: `500ms`, `2s`, `15m`.
+/// The longest time an option takes.
+const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
+
+/// A duration with its unit: `500ms`, `2s`, `15m`; at most a day.
 pub(super) fn duration(text: &str) -> Result<Duration, String> {
-    humantime::parse_duration(text).map_err(|error| {
-        if text.parse::<f64>().is_ok() {
-            format!("a time needs its unit, such as {text}s or {text}ms")
-        } else {
-            format!("{error}; a time is a number and its unit, such as 500ms, 2s or 15m")
-        }
-    })
+    match humantime::parse_duration(text) {
+        Ok(time) if time > LONGEST => Err("the longest time is 24h".to_owned()),
+        Ok(time) => Ok(time),
+        Err(_) if text.parse::<f64>().is_ok() => Err(format!(
+            "a time needs its unit, such as {text}s or {text}ms"
+        )),
+        Err(error) => Err(format!(
+            "{error}; a time is a number and its unit, such as 500ms, 2s or 15m"
+        )),
+    }
 }
 
-/// A speed in bits a second.
+/// A duration above zero.
+pub(super) fn timeout(text: &str) -> Result<Duration, String> {
+    match duration(text)? {
+        Duration::ZERO => Err("no meter answers in no time".to_owned()),
+        time => Ok(time),
+    }
+}
+
+/// A speed in bits a second; the slowest in use is 50.
 pub(super) fn baud(text: &str) -> Result<u32, String> {
     match text.parse() {
-        Ok(baud) if baud > 0 => Ok(baud),
-        _ => Err("a speed is a whole number of bits a second, such as 9600".to_owned()),
+        Ok(baud) if baud >= 50 => Ok(baud),
+        _ => Err("a speed is a whole number of bits a second from 50, such as 9600".to_owned()),
     }
 }
 
@@ -37,22 +51,25 @@ impl FromStr for Units {
             if first > last {
                 return Err(format!("{part} runs backwards"));
             }
-            units.extend(
-                (first..=last)
-                    .filter(|unit| !units.contains(unit))
-                    .collect::<Vec<_>>(),
-            );
+            for unit in first..=last {
+                if !units.contains(&unit) {
+                    units.push(unit);
+                }
+            }
         }
         Ok(Self(units))
     }
 }
 
 fn number(text: &str) -> Result<u16, String> {
-    let number = match text.strip_prefix("0x") {
-        Some(hex) => u8::from_str_radix(hex, 16).ok(),
-        None => text.parse().ok(),
-    };
-    number.map(u16::from).ok_or_else(|| {
-        format!("'{text}' is no unit: a number from 1 to 247, or a list such as 1,2,5-9")
-    })
+    let text = text.trim();
+    let hex = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"));
+    let (digits, radix) = hex.map_or((text, 10), |hex| (hex, 16));
+    match u8::from_str_radix(digits, radix) {
+        // The conversion would take a sign.
+        Ok(number) if !digits.starts_with('+') => Ok(number.into()),
+        _ => Err(format!(
+            "'{text}' is no unit: a number from 1 to 255, or a list such as 1,2,5-9"
+        )),
+    }
 }

@@ -5,7 +5,7 @@
 
 use crate::codec::length::{self, Direction};
 use crate::codec::rtu::{self, Frame};
-use crate::codec::{FunctionCode, Reply, Request, Response, Unit};
+use crate::codec::{Reply, Request, Response, Unit};
 
 /// What to make of our own bytes coming back, as they do where a two-wire adapter keeps its
 /// receiver on.
@@ -235,12 +235,19 @@ impl<'a> Expectation<'a> {
             Ok((_, Reply::Exception { function, code })) => {
                 format!("{code} to {function}")
             }
-            Ok((_, Reply::Normal(Response::Registers { function, values })))
-                if FunctionCode::from(function) == self.request.function() =>
-            {
-                format!("{} registers", values.count())
-            }
-            Ok((_, Reply::Normal(response))) => format!("an answer to {}", response.function()),
+            Ok((_, Reply::Normal(response))) => match (self.request, response) {
+                (
+                    Request::Read { function, range },
+                    Response::Registers {
+                        function: answered,
+                        values,
+                    },
+                ) if *function == answered => {
+                    let (found, asked) = (values.count(), range.count());
+                    format!("{found} registers where {asked} were asked for")
+                }
+                (_, response) => format!("an answer to {}", response.function()),
+            },
         }
     }
 }

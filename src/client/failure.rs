@@ -71,13 +71,19 @@ impl Failure {
 fn noticed(others: usize, stray: usize) -> String {
     let mut heard = Vec::new();
     if others > 0 {
-        heard.push(format!("{others} frames of other units"));
+        heard.push(format!("{} of other units", counted(others, "frame")));
     }
     if stray > 0 {
-        heard.push(format!("{stray} stray bytes"));
+        heard.push(counted(stray, "stray byte"));
     }
     if heard.is_empty() {
         return String::new();
     }
     format!(", only {}", heard.join(" and "))
+}
+
+/// `1 frame`, `2 frames`.
+fn counted(count: usize, what: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{plural}")
 }

@@ -7,10 +7,11 @@
 //!   count and CRC all have to be what the request implies.
 //! * [`transaction`] keeps the silences, the one deadline and the retries, which repeat the *same*
 //!   request, so that a late answer to an earlier attempt is still a right one.
-//! * After failed attempts, [`transaction::Client`] remembers the answers that may still come, and
-//!   waits for them before a *different* request goes out.
+//! * `debts` remembers the answers that may still come after failed attempts; they are waited for
+//!   before a *different* request goes out, and before the line is left.
 
 pub mod belief;
+mod debts;
 pub mod failure;
 pub mod transaction;
 

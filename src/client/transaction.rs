@@ -6,6 +6,7 @@ use jiff::Timestamp;
 use log::info;
 
 use super::belief::{self, Certainty, Echo, Evidence, Expectation, Verdict};
+use super::debts::Debts;
 use super::failure::Failure;
 use crate::codec::rtu::{self, Frame};
 use crate::codec::{Reply, Request, Response, Unit};
@@ -13,7 +14,7 @@ use crate::transport::Line;
 use crate::transport::line::Quiet;
 
 /// Allowance for adapters that hold bytes back: two of the 16 ms periods of a common USB chip.
-const ADAPTER_LATENCY: Duration = Duration::from_millis(32);
+pub(super) const ADAPTER_LATENCY: Duration = Duration::from_millis(32);
 
 /// A gap this long after a damaged answer means that nothing more comes: six of those periods.
 const GAP: Duration = Duration::from_millis(100);
@@ -30,6 +31,9 @@ const SHORTEST_FRAME: usize = 4;
 pub struct Patience {
     /// How long an answer may take to begin; its transfer time comes on top.
     pub timeout: Duration,
+    /// How long the meter may take at the worst: as long, past the time-out, nothing else is asked
+    /// of a unit that has not answered.
+    pub longest_answer: Duration,
     /// How many times a request is repeated when the line fails.
     pub retries: u32,
     /// Least time between the end of anything on the line and the next request; t3.5 is kept
@@ -42,6 +46,7 @@ impl Default for Patience {
     fn default() -> Self {
         Self {
             timeout: Duration::from_secs(1),
+            longest_answer: Duration::from_secs(1),
             retries: 2,
             pause: Duration::ZERO,
         }
@@ -72,35 +77,36 @@ pub struct Client {
     echoes: Option<bool>,
     /// Whether anything was sent yet: the pause is one between requests.
     sent: bool,
-    /// Answers that have not come and may still do so.
-    owed: Option<Owed>,
-}
-
-/// A request that was sent more often than it was answered.
-struct Owed {
-    unit: Unit,
-    request: Request,
-    frame: Frame,
-    answers: u32,
-    /// Until when they are waited for.
-    until: Duration,
+    debts: Debts,
 }
 
 impl Client {
     /// Takes over a line.
-    pub const fn new(line: Line, echo: Echo) -> Self {
+    pub fn new(line: Line, echo: Echo) -> Self {
         Self {
             line,
             echo,
             echoes: None,
             sent: false,
-            owed: None,
+            debts: Debts::default(),
         }
     }
 
-    /// The time of day, from the line's clock.
-    pub fn today(&self) -> Timestamp {
-        self.line.today()
+    /// The time in UTC, from the line's clock.
+    pub fn utc_now(&self) -> Timestamp {
+        self.line.utc_now()
+    }
+
+    /// Leaves the line, and lets no late answer be taken for one to whoever opens it next: what
+    /// may still come is waited for. Takes no time when every request was answered.
+    ///
+    /// # Errors
+    /// [`Failure::Port`] when the port is gone.
+    pub fn finish(mut self) -> Result<(), Failure> {
+        if self.debts.wait_until(None, self.line.now()).is_some() {
+            info!("waiting for answers that may still come");
+        }
+        self.settle(None)
     }
 
     /// Sends a request that changes nothing and returns its answer, repeating it when the line
@@ -121,7 +127,7 @@ impl Client {
             frame: &frame,
             patience,
         };
-        self.settle_debts(&frame)?;
+        self.settle(Some((unit, &frame)))?;
         let mut retries = 1..=patience.retries;
         loop {
             match self.attempt(asked) {
@@ -151,7 +157,9 @@ impl Client {
         }
         let sent = self.line.send(asked.frame.as_bytes())?;
         self.sent = true;
-        self.owe(asked, sent);
+        let transfer = self.transfer_time(asked.request);
+        let owed = (asked.unit, asked.request, asked.frame);
+        self.debts.owe(owed, asked.patience, sent, transfer);
         self.listen(asked, sent)
     }
 
@@ -167,13 +175,12 @@ impl Client {
         let mut evidence = Evidence::default();
         loop {
             let left = deadline.saturating_sub(self.line.now());
-            if left.is_zero() {
-                if evidence.damaged == Some(Certainty::Certain) {
-                    self.answered();
-                }
-                return Err(failure(evidence, received.len(), timeout));
+            // At the deadline one last look: a process that was held up has bytes waiting.
+            let came = self.line.receive_into(&mut received, left)?;
+            if came == 0 && left.is_zero() {
+                return Err(self.give_up(asked, evidence, received.len()));
             }
-            if self.line.receive_into(&mut received, left)? == 0 {
+            if came == 0 {
                 continue;
             }
             let verdict = expectation.judge(&received);
@@ -181,10 +188,10 @@ impl Client {
             match verdict {
                 Verdict::Answer(reply, before) => {
                     self.learn_echo(&before);
-                    if self.is_clean(asked.request, &before) {
+                    if self.is_clean(asked, &before) {
                         self.echoes.get_or_insert(false);
                     }
-                    self.answered();
+                    self.debts.paid(asked.unit, self.line.now());
                     if before.stray > 0 {
                         info!("{} stray bytes before the answer skipped", before.stray);
                     }
@@ -195,6 +202,9 @@ impl Client {
                 Verdict::Waiting(found) => evidence = found,
             }
             self.learn_echo(&evidence);
+            if left.is_zero() {
+                return Err(self.give_up(asked, evidence, received.len()));
+            }
             deadline = if evidence.has_begun() {
                 end_by
             } else if evidence.damaged >= Some(Certainty::Likely) {
@@ -205,6 +215,14 @@ impl Client {
         }
     }
 
+    /// The time is up.
+    fn give_up(&mut self, asked: Asked<'_>, evidence: Evidence, received: usize) -> Failure {
+        if evidence.damaged == Some(Certainty::Certain) {
+            self.debts.paid(asked.unit, self.line.now());
+        }
+        failure(evidence, received, asked.patience.timeout)
+    }
+
     fn learn_echo(&mut self, seen: &Evidence) {
         if seen.echoes > 0 {
             self.echoes = Some(true);
@@ -213,56 +231,23 @@ impl Client {
 
     /// Whether an answer with `before` before it shows that the line does not echo: it was asked
     /// for once, so it is no late one that came ahead of the echo.
-    fn is_clean(&self, request: &Request, before: &Evidence) -> bool {
-        let asked_once = self.owed.as_ref().is_some_and(|owed| owed.answers == 1);
-        asked_once && *before == Evidence::default() && !belief::is_mirrored(request)
+    fn is_clean(&self, asked: Asked<'_>, before: &Evidence) -> bool {
+        let asked_once = self.debts.answers(asked.unit) == 1;
+        asked_once && *before == Evidence::default() && !belief::is_mirrored(asked.request)
     }
 
-    /// One more answer is to be expected. Until when it is waited for: as long again as an answer
-    /// may take to begin, for a meter that is late is seldom later than that.
-    fn owe(&mut self, asked: Asked<'_>, sent: Duration) {
-        let owed = self.owed.take().filter(|owed| owed.until > sent);
-        let before = owed.map_or(0, |owed| owed.answers);
-        self.owed = Some(Owed {
-            unit: asked.unit,
-            request: asked.request.clone(),
-            frame: asked.frame.clone(),
-            answers: before + 1,
-            until: sent + 2 * asked.patience.timeout + self.transfer_time(asked.request),
-        });
-    }
-
-    /// One answer has come.
-    fn answered(&mut self) {
-        self.owed = self.owed.take().and_then(|owed| {
-            let answers = owed.answers - 1;
-            (answers > 0).then_some(Owed { answers, ..owed })
-        });
-    }
-
-    /// Before a different request goes out, waits for the answers that earlier attempts may still
-    /// get, and throws them away. The same request may go out at once: a late answer to it is
-    /// right.
-    fn settle_debts(&mut self, next: &Frame) -> Result<(), Failure> {
+    /// Waits for the answers that earlier attempts may still get, and throws them away: before
+    /// `next` goes out, or before the line is left.
+    fn settle(&mut self, next: Option<(Unit, &Frame)>) -> Result<(), Failure> {
         let mut received = Vec::new();
-        while let Some(owed) = self.owed.as_ref().filter(|owed| owed.frame != *next) {
-            let left = owed.until.saturating_sub(self.line.now());
-            if left.is_zero() {
-                self.owed = None;
-                break;
-            }
+        while let Some(until) = self.debts.wait_until(next, self.line.now()) {
+            let left = until.saturating_sub(self.line.now());
             self.line.receive_into(&mut received, left)?;
-            let asked = Asked {
-                unit: owed.unit,
-                request: &owed.request,
-                frame: &owed.frame,
-                patience: Patience::default(),
-            };
-            let verdict = asked.expectation(self.echo, self.echoes).judge(&received);
-            if let Verdict::Answer(..) = verdict {
-                info!("unit {}: a late answer was thrown away", owed.unit);
+            let paid = self.debts.paid_by(&received, self.echo, self.echoes);
+            if let Some(unit) = paid {
+                info!("unit {unit}: a late answer was thrown away");
                 received.clear();
-                self.answered();
+                self.debts.paid(unit, self.line.now());
             }
             forget_oldest(&mut received);
         }
@@ -290,8 +275,14 @@ fn failure(evidence: Evidence, received: usize, timeout: Duration) -> Failure {
     if evidence.damaged.is_some() {
         return Failure::Damaged { received };
     }
-    if let Some((received, expected)) = evidence.begun {
-        return Failure::Truncated { received, expected };
+    // Behind other bytes, a last one like the unit's number is as well noise.
+    if let Some((begun, expected)) = evidence.begun
+        && (begun > 1 || received == 1)
+    {
+        return Failure::Truncated {
+            received: begun,
+            expected,
+        };
     }
     if evidence.others == 0 && evidence.stray >= SHORTEST_FRAME {
         return Failure::Damaged { received };

@@ -25,6 +25,23 @@ pub enum CommandError {
         /// The name.
         name: String,
     },
+    /// An option that has no effect on the format asked for.
+    #[error("{option} is for {format}")]
+    NoEffect {
+        /// The option.
+        option: &'static str,
+        /// What it is for.
+        format: &'static str,
+    },
+    /// No port was named, and something is to be sent.
+    #[error("the port is empty")]
+    NoPort,
+    /// Something that looks like the simulated line and is not.
+    #[error("there is no simulated line '{port}'")]
+    UnknownSimulation {
+        /// What was named.
+        port: String,
+    },
     /// The meter does not read with this function.
     #[error("{meter} does not answer function {code:02}")]
     Function {

@@ -1,24 +1,33 @@
 //! `meters`: what the program knows.
 
-use super::{CommandError, ExitCode, print, report};
+use super::report::Report;
+use super::{CommandError, ExitCode, print};
 use crate::output::columns::columns;
 use crate::profile::{Profile, builtin, find};
 
-/// Lists the meters inside the program and the user's own.
-pub(super) fn list() -> Result<ExitCode, CommandError> {
+/// Lists the meters that can be named: the user's own, and those inside the program that no own
+/// one replaces. One that does not load is told, and the others are listed all the same.
+pub(super) fn list(report: &mut Report) -> Result<ExitCode, CommandError> {
     let mut lines: Vec<Vec<String>> = Vec::new();
-    for meter in builtin::all() {
-        lines.push(line(&meter.profile(), "built in"));
-    }
+    let mut end = ExitCode::Done;
     for path in find::own_files() {
-        match find::file(&path) {
+        match find::own(&path) {
             Ok(profile) => lines.push(line(&profile, &path.display().to_string())),
-            Err(error) => report::warning(&error.to_string()),
+            Err(error) => end = report.error(&error.into()),
+        }
+    }
+    for meter in builtin::all() {
+        if !lines
+            .iter()
+            .any(|line| line.first().is_some_and(|name| name == meter.name))
+        {
+            lines.push(line(&meter.profile(), "built in"));
         }
     }
     lines.sort();
     let header = ["NAME", "METER", "POINTS", "LINE", "FROM"];
-    print(columns(&header, &[2], lines).as_bytes())
+    print(columns(&header, &[2], lines).as_bytes())?;
+    Ok(end)
 }
 
 fn line(profile: &Profile, from: &str) -> Vec<String> {

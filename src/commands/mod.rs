@@ -16,6 +16,8 @@ use std::io::{self, Write};
 
 use crate::cli::{self, Command};
 
+use report::Report;
+
 pub use error::CommandError;
 pub use exit_code::ExitCode;
 
@@ -27,14 +29,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Err(usage) => return report::usage(&usage),
     };
     logging::start(arguments.verbosity);
-    let quiet = arguments.verbosity.quiet;
+    let mut report = Report::new(arguments.verbosity.quiet);
     let result = match arguments.command {
-        Command::ReadRegisters(arguments) => read_registers::run(&arguments, quiet),
-        Command::Meters(_) => meters::list(),
-        Command::Ports => ports::list(quiet),
+        Command::ReadRegisters(arguments) => read_registers::run(&arguments, &mut report),
+        Command::Meters(_) => meters::list(&mut report),
+        Command::Ports => ports::list(&report),
         Command::Completions(arguments) => completions::print_script(&arguments),
     };
-    result.unwrap_or_else(|error| report::error(&error, quiet))
+    result.unwrap_or_else(|error| report.error(&error))
 }
 
 /// Writes text to stdout in one go.

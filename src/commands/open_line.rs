@@ -57,13 +57,18 @@ impl<'a> LinePlan<'a> {
 
     /// The line as messages and headings name it: `/dev/ttyUSB0 at 9600 8N1`.
     pub(super) fn name(&self) -> String {
-        format!("{} at {}", self.arguments.port, self.settings)
+        format!("{} at {}", self.port(), self.settings)
+    }
+
+    fn port(&self) -> &str {
+        self.arguments.port.as_deref().unwrap_or_default()
     }
 
     /// How patient to be with a meter of these limits.
     pub(super) fn patience(&self, limits: &Limits) -> Patience {
         Patience {
             timeout: self.arguments.timeout.unwrap_or(limits.longest_answer),
+            longest_answer: limits.longest_answer,
             retries: self.arguments.retries,
             pause: self.arguments.pause.unwrap_or(limits.pause),
         }
@@ -92,9 +97,16 @@ impl<'a> LinePlan<'a> {
     }
 
     fn transport(&self, clock: &Arc<dyn Clock>) -> Result<Box<dyn Transport>, CommandError> {
-        let port = self.arguments.port.as_str();
+        let port = self.port();
+        if port.is_empty() {
+            return Err(CommandError::NoPort);
+        }
         if port == "sim:" {
             return Ok(Box::new(SimulatedLine::new(SEED, Arc::clone(clock))));
+        }
+        if port == "sim" || port.starts_with("sim:") {
+            let port = port.to_owned();
+            return Err(CommandError::UnknownSimulation { port });
         }
         if port.starts_with("tcp://") || port.starts_with("rtu+tcp://") {
             let port = port.to_owned();

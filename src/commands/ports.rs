@@ -1,17 +1,16 @@
 //! `ports`: the serial ports of this machine.
 
+use super::report::Report;
 use super::{CommandError, ExitCode, print};
 use crate::output::columns::columns;
 use crate::output::escape;
 use crate::transport::ports::{self, PortKind};
 
 /// Prints the ports, each with what it is and its lasting name.
-pub(super) fn list(quiet: bool) -> Result<ExitCode, CommandError> {
+pub(super) fn list(report: &Report) -> Result<ExitCode, CommandError> {
     let ports = ports::list()?;
     if ports.is_empty() {
-        if !quiet {
-            eprintln!("no serial ports; sim: is a simulated line inside the program");
-        }
+        report.remark("no serial ports; sim: is a simulated line inside the program");
         return Ok(ExitCode::Done);
     }
     let lines = ports.into_iter().map(|port| {

@@ -4,18 +4,24 @@ use std::collections::BTreeSet;
 use std::io::{self, IsTerminal, Write};
 
 use super::open_line::LinePlan;
-use super::{CommandError, ExitCode, print, report};
+use super::report::{self, Place, Report};
+use super::{CommandError, ExitCode, print};
 use crate::cli::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
+use crate::client::{Client, Patience};
 use crate::codec::{FunctionCode, ReadFunction, Unit, rtu};
-use crate::output::csv::CsvStyle;
-use crate::output::{Json, JsonLines, LongCsv, Sink, Table, WideCsv};
+use crate::output::csv::{CsvStyle, WIDE_COLUMNS};
+use crate::output::{Heading, Json, JsonLines, LongCsv, Sink, Table, WideCsv};
 use crate::profile::plan::Cost;
-use crate::profile::selector::{Numbering, select};
+use crate::profile::selector::{Numbering, Reading, select};
 use crate::profile::{Limits, Plan, Point, Profile, find};
-use crate::readings;
+use crate::readings::{Fault, Row, take};
 
 /// Reads and prints what was asked for, unit by unit.
-pub(super) fn run(arguments: &ReadRegisters, quiet: bool) -> Result<ExitCode, CommandError> {
+pub(super) fn run(
+    arguments: &ReadRegisters,
+    report: &mut Report,
+) -> Result<ExitCode, CommandError> {
+    effects(arguments)?;
     let profile = arguments.meter.as_deref().map(find::find).transpose()?;
     let line = LinePlan::new(&arguments.line, profile.as_ref());
     let limits = profile
@@ -23,36 +29,104 @@ pub(super) fn run(arguments: &ReadRegisters, quiet: bool) -> Result<ExitCode, Co
         .map_or_else(Limits::default, |profile| profile.limits.clone());
     let units = units(arguments, &limits)?;
     let points = points(arguments, profile.as_ref())?;
-    let function = function(arguments, profile.as_ref())?;
-    let cost = Cost::new(line.settings, &limits);
-    let plan = Plan::new(&points, function, &limits, cost);
+    let function = function(arguments, &limits);
+    let plan = Plan::new(
+        &points,
+        function,
+        &limits,
+        Cost::new(line.settings, &limits),
+    );
     if arguments.dry_run {
         return print(frames(&units, &plan).as_bytes());
     }
 
     let mut client = line.open()?;
-    let patience = line.patience(&limits);
-    let meter = profile.as_ref().map_or("", |profile| profile.name.as_str());
-    let name = line.name();
-    let mut sink = sink(arguments, &name, quiet);
+    let round = Round {
+        units: &units,
+        meter: profile.as_ref().map_or("", |profile| profile.name.as_str()),
+        points: &points,
+        plan: &plan,
+        patience: line.patience(&limits),
+        line: &line.name(),
+    };
+    let result = read(arguments, &round, &mut client, report);
+    // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
+    // lost has none.
+    let _ = client.finish();
+    result
+}
+
+/// What is read: every unit once.
+struct Round<'a> {
+    units: &'a [Unit],
+    meter: &'a str,
+    points: &'a [Point],
+    plan: &'a Plan,
+    patience: Patience,
+    line: &'a str,
+}
+
+fn read(
+    arguments: &ReadRegisters,
+    round: &Round<'_>,
+    client: &mut Client,
+    report: &mut Report,
+) -> Result<ExitCode, CommandError> {
+    let heading = match round.units.len() {
+        _ if !report.is_quiet() => Heading::Full {
+            line: round.line.to_owned(),
+        },
+        0 | 1 => Heading::None,
+        _ => Heading::Unit,
+    };
+    let mut sink = sink(arguments, heading);
     let mut delivered = 0;
     let mut faults = Vec::new();
-    for unit in units {
-        let (row, failures) = readings::take(&mut client, unit, meter, &points, &plan, patience);
-        let place = report::Place {
-            line: &name,
-            unit,
-            attempts: patience.retries + 1,
+    let mut lost = 0;
+    for unit in round.units.iter().copied() {
+        let row = if lost == 0 {
+            ask(round, unit, client, report)
+        } else {
+            let count = round.points.len();
+            Row::missing(client.utc_now(), round.meter, unit, count, Fault::Port)
         };
-        for failure in &failures {
-            report::failed(&place, failure, quiet);
-        }
-        sink.row(&points, &row).map_err(CommandError::Output)?;
+        lost += usize::from(row.worst() == Some(Fault::Port));
+        sink.row(round.points, &row).map_err(CommandError::Output)?;
         faults.extend(row.faults());
         delivered += row.readings.len() - row.faults().count();
     }
     sink.finish().map_err(CommandError::Output)?;
+    if lost > 1 {
+        report::untried_units(lost - 1);
+    }
     Ok(ExitCode::of(delivered, &faults))
+}
+
+/// Reads one unit and tells what went wrong.
+fn ask(round: &Round<'_>, unit: Unit, client: &mut Client, report: &mut Report) -> Row {
+    let Round { points, plan, .. } = round;
+    let (row, troubles) = take(client, unit, round.meter, points, plan, round.patience);
+    let place = Place {
+        line: round.line,
+        unit,
+        attempts: round.patience.retries + 1,
+    };
+    for trouble in &troubles {
+        report.trouble(&place, trouble);
+    }
+    row
+}
+
+/// Refuses options that would do nothing.
+fn effects(arguments: &ReadRegisters) -> Result<(), CommandError> {
+    let is_csv = arguments.format == FormatChoice::Csv;
+    let no_effect = |option, format| Err(CommandError::NoEffect { option, format });
+    match arguments.layout {
+        Some(_) if !is_csv => no_effect("--layout", "--format csv"),
+        Some(Layout::Long) if arguments.units => no_effect("--units", "wide CSV"),
+        _ if arguments.units && !is_csv => no_effect("--units", "--format csv"),
+        _ => Ok(()),
+    }
 }
 
 fn units(arguments: &ReadRegisters, limits: &Limits) -> Result<Vec<Unit>, CommandError> {
@@ -66,14 +140,20 @@ fn points(
     arguments: &ReadRegisters,
     profile: Option<&Profile>,
 ) -> Result<Vec<Point>, CommandError> {
-    let numbering = match arguments.numbering {
-        NumberingChoice::Protocol => Numbering::Protocol,
-        NumberingChoice::Modicon => Numbering::Modicon,
+    let reading = Reading {
+        numbering: match arguments.numbering {
+            NumberingChoice::Protocol => Numbering::Protocol,
+            NumberingChoice::Modicon => Numbering::Modicon,
+        },
+        function: typed_function(arguments),
+        profile,
     };
-    let points = select(&arguments.what, numbering, profile)?;
-    let is_wide_csv = arguments.format == FormatChoice::Csv && arguments.layout == Layout::Wide;
-    if is_wide_csv {
-        let mut names = BTreeSet::new();
+    let points = select(&arguments.what, reading)?;
+    if let Some(profile) = profile {
+        answered(&points, profile)?;
+    }
+    if arguments.format == FormatChoice::Csv && arguments.layout != Some(Layout::Long) {
+        let mut names: BTreeSet<&str> = WIDE_COLUMNS.into();
         if let Some(point) = points.iter().find(|point| !names.insert(&point.name)) {
             let name = point.name.clone();
             return Err(CommandError::ColumnClash { name });
@@ -82,29 +162,33 @@ fn points(
     Ok(points)
 }
 
-/// The function typed, as far as the meter answers it; else the meter's own.
-fn function(
-    arguments: &ReadRegisters,
-    profile: Option<&Profile>,
-) -> Result<ReadFunction, CommandError> {
-    let typed = arguments.function.map(|function| match function {
+/// Whether the meter answers the functions that points need.
+fn answered(points: &[Point], profile: &Profile) -> Result<(), CommandError> {
+    let needed = points.iter().filter_map(|point| point.function);
+    for code in needed.map(FunctionCode::from) {
+        if !profile.limits.functions.contains(&code) {
+            return Err(CommandError::Function {
+                meter: profile.name.clone(),
+                code: code.get(),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn typed_function(arguments: &ReadRegisters) -> Option<ReadFunction> {
+    arguments.function.map(|function| match function {
         FunctionChoice::HoldingRegisters => ReadFunction::HoldingRegisters,
         FunctionChoice::InputRegisters => ReadFunction::InputRegisters,
-    });
-    let Some(profile) = profile else {
-        return Ok(typed.unwrap_or_default());
-    };
-    let Some(function) = typed else {
-        return Ok(profile.limits.read_function());
-    };
-    let code = FunctionCode::from(function);
-    if !profile.limits.functions.contains(&code) {
-        return Err(CommandError::Function {
-            meter: profile.name.clone(),
-            code: code.get(),
-        });
-    }
-    Ok(function)
+    })
+}
+
+/// The function for points that have none of their own: the meter's, or the one typed where the
+/// meter takes both for one.
+fn function(arguments: &ReadRegisters, limits: &Limits) -> ReadFunction {
+    typed_function(arguments)
+        .filter(|_| limits.interchangeable_reads)
+        .unwrap_or_else(|| limits.read_function())
 }
 
 /// The requests as they would go out, one a line.
@@ -119,7 +203,7 @@ fn frames(units: &[Unit], plan: &Plan) -> String {
         .collect()
 }
 
-fn sink(arguments: &ReadRegisters, line: &str, quiet: bool) -> Box<dyn Sink> {
+fn sink(arguments: &ReadRegisters, heading: Heading) -> Box<dyn Sink> {
     let out = io::stdout();
     let style = CsvStyle {
         units: arguments.units,
@@ -127,9 +211,9 @@ fn sink(arguments: &ReadRegisters, line: &str, quiet: bool) -> Box<dyn Sink> {
     };
     let out: Box<dyn Write> = Box::new(out.lock());
     match (arguments.format, arguments.layout) {
-        (FormatChoice::Table, _) => Box::new(Table::new(out, (!quiet).then(|| line.to_owned()))),
-        (FormatChoice::Csv, Layout::Wide) => Box::new(WideCsv::new(out, style)),
-        (FormatChoice::Csv, Layout::Long) => Box::new(LongCsv::new(out, style)),
+        (FormatChoice::Table, _) => Box::new(Table::new(out, heading)),
+        (FormatChoice::Csv, Some(Layout::Long)) => Box::new(LongCsv::new(out, style)),
+        (FormatChoice::Csv, _) => Box::new(WideCsv::new(out, style)),
         (FormatChoice::Json, _) => Box::new(Json::new(out)),
         (FormatChoice::Jsonl, _) => Box::new(JsonLines::new(out)),
     }

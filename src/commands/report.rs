@@ -1,93 +1,151 @@
 //! Turns errors into messages, hints and exit codes: the one place for all three.
 
+use std::collections::BTreeSet;
 use std::error::Error;
-use std::io;
+use std::fmt;
+use std::io::{self, Write};
 
 use super::{CommandError, ExitCode};
 use crate::cli::Usage;
 use crate::client::Failure;
-use crate::codec::{AddressError, ExceptionCode};
+use crate::codec::{AddressError, ExceptionCode, Unit};
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
-use crate::readings::Failed;
+use crate::readings::Trouble;
 use crate::transport::OpenError;
 
-/// Prints what there is to say to a command line that nothing comes of.
+/// Prints what there is to say to a command line that nothing comes of: help on stdout, errors on
+/// stderr.
 pub(super) fn usage(message: &Usage) -> ExitCode {
     match message.print() {
-        Ok(()) if message.is_error() => ExitCode::Usage,
+        _ if message.is_error() => ExitCode::Usage,
         Ok(()) => ExitCode::Done,
-        Err(_) => ExitCode::Output,
+        Err(cause) => Report::new(false).error(&CommandError::Output(cause)),
     }
 }
 
-/// Prints an error with its causes and its hint, and returns what to end with.
-pub(super) fn error(error: &CommandError, quiet: bool) -> ExitCode {
-    // Somebody who closed the pipe has read enough: nothing to tell.
-    if let CommandError::Output(cause) = error
-        && cause.kind() == io::ErrorKind::BrokenPipe
-    {
-        return ExitCode::Output;
-    }
-    say(error, hint(error), quiet);
-    exit_code(error)
+/// Prints messages, and each hint once.
+pub(super) struct Report {
+    quiet: bool,
+    hinted: BTreeSet<String>,
 }
 
-/// Where a read failed, for the message.
+/// Where and how often a read was tried, for the message.
 pub(super) struct Place<'a> {
     /// `sim: at 9600 8N1`.
     pub(super) line: &'a str,
     /// The unit.
-    pub(super) unit: crate::codec::Unit,
-    /// How often the read was tried.
+    pub(super) unit: Unit,
+    /// How often a read is tried.
     pub(super) attempts: u32,
 }
 
-/// Prints why a read brought nothing.
-pub(super) fn failed(place: &Place<'_>, failed: &Failed, quiet: bool) {
-    let Place {
-        line,
-        unit,
-        attempts,
-    } = place;
-    let range = failed.read.range;
-    let mut text = format!(
-        "unit {unit} on {line}, registers {range}: {}",
-        failed.failure
-    );
-    if *attempts > 1 && failed.failure.is_worth_a_retry() {
-        text = format!("{text}, {attempts} attempts");
+impl Report {
+    /// Prints no hints when `quiet`.
+    pub(super) const fn new(quiet: bool) -> Self {
+        Self {
+            quiet,
+            hinted: BTreeSet::new(),
+        }
     }
-    if failed.untried > 0 {
-        text = format!(
-            "{text}; {} more reads of this unit were not tried",
-            failed.untried
-        );
+
+    /// Whether only readings and errors are wanted.
+    pub(super) const fn is_quiet(&self) -> bool {
+        self.quiet
     }
-    eprintln!("error: {text}");
-    causes(&failed.failure);
-    if let (Some(hint), false) = (failure_hint(&failed.failure), quiet) {
-        eprintln!("hint: {hint}");
+
+    /// Prints an error with its causes and its hint, and returns what to end with.
+    pub(super) fn error(&mut self, error: &CommandError) -> ExitCode {
+        // Somebody who closed the pipe has read enough: nothing to tell.
+        let is_closed_pipe = matches!(error, CommandError::Output(cause)
+            if cause.kind() == io::ErrorKind::BrokenPipe);
+        if !is_closed_pipe {
+            say(format_args!("error: {error}"));
+            causes(error);
+            self.hint(hint(error));
+        }
+        exit_code(error)
+    }
+
+    /// Prints what went wrong while points of a unit were read.
+    pub(super) fn trouble(&mut self, place: &Place<'_>, trouble: &Trouble) {
+        let Place { line, unit, .. } = place;
+        let at = format!("unit {unit} on {line}");
+        match trouble {
+            Trouble::Unread {
+                read,
+                failure,
+                untried,
+            } => {
+                let mut text = format!("{at}, registers {}: {failure}", read.range);
+                if place.attempts > 1 && failure.is_worth_a_retry() {
+                    text = format!("{text}, {} attempts", place.attempts);
+                }
+                match untried {
+                    0 => {}
+                    1 => text.push_str("; 1 more read of this unit was not tried"),
+                    _ => text = format!("{text}; {untried} more reads of this unit were not tried"),
+                }
+                say(format_args!("error: {text}"));
+                causes(failure);
+                self.hint(failure_hint(failure).map(str::to_owned));
+            }
+            Trouble::Impossible {
+                point,
+                kind,
+                registers,
+            } => {
+                let words: Vec<String> =
+                    registers.iter().map(|word| format!("{word:04X}")).collect();
+                let words = words.join(" ");
+                say(format_args!(
+                    "error: {at}, {point}: registers {words} hold no {kind}"
+                ));
+                self.hint(Some(
+                    "the type, byte order or scale is not this register's, or the meter's value \
+                     is broken"
+                        .to_owned(),
+                ));
+            }
+        }
+    }
+
+    /// Prints something a person may want to know although all is well.
+    pub(super) fn remark(&self, text: &str) {
+        if !self.quiet {
+            say(format_args!("{text}"));
+        }
+    }
+
+    fn hint(&mut self, hint: Option<String>) {
+        if let Some(hint) = hint.filter(|_| !self.quiet)
+            && self.hinted.insert(hint.clone())
+        {
+            say(format_args!("hint: {hint}"));
+        }
     }
 }
 
-/// Something a person may want to know, although the command goes on.
-pub(super) fn warning(text: &str) {
-    log::warn!("warning: {text}");
+/// Prints that units were not asked because the port is gone.
+pub(super) fn untried_units(count: usize) {
+    let (units, were) = if count == 1 {
+        ("unit", "was")
+    } else {
+        ("units", "were")
+    };
+    say(format_args!("error: {count} more {units} {were} not tried"));
 }
 
-fn say(error: &dyn Error, hint: Option<String>, quiet: bool) {
-    eprintln!("error: {error}");
-    causes(error);
-    if let (Some(hint), false) = (hint, quiet) {
-        eprintln!("hint: {hint}");
-    }
+/// Writes a line to stderr. Where stderr does not take it, there is nobody to tell, and the
+/// readings still go out.
+fn say(line: fmt::Arguments<'_>) {
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 fn causes(error: &dyn Error) {
     let mut cause = error.source();
     while let Some(error) = cause {
-        eprintln!("  because: {error}");
+        say(format_args!("  because: {error}"));
         cause = error.source();
     }
 }
@@ -98,6 +156,9 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::Select(_)
         | CommandError::ColumnClash { .. }
         | CommandError::Function { .. }
+        | CommandError::NoEffect { .. }
+        | CommandError::NoPort
+        | CommandError::UnknownSimulation { .. }
         | CommandError::Find(_)
         | CommandError::Tcp { .. } => ExitCode::Usage,
         CommandError::Open(_) | CommandError::Lost(_) | CommandError::Ports(_) => ExitCode::Port,
@@ -119,6 +180,9 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::Find(FindError::Unknown { .. }) => {
             "`meterpoll meters list` shows them; a profile file is named by its path"
         }
+        CommandError::NoPort => "give a serial port with --port, or sim: for the simulated line",
+        CommandError::UnknownSimulation { .. } => "the simulated line is named sim:",
+        CommandError::Find(FindError::Misnamed { .. }) => "give both the same name",
         CommandError::Tcp { .. } => "give a serial port, or sim: for the simulated line",
         CommandError::Open(error) => return open_hint(error),
         _ => return None,
@@ -128,6 +192,15 @@ fn hint(error: &CommandError) -> Option<String> {
 
 fn select_hint(error: &SelectError) -> Option<String> {
     let text = match error {
+        SelectError::UnknownPoint { near, .. } if !near.is_empty() => return None,
+        SelectError::UnknownPoint { groups, .. } | SelectError::NoMatch { groups, .. } => {
+            return Some(format!(
+                "groups are {}; '*' reads every point",
+                groups.join(", ")
+            ));
+        }
+        SelectError::PointForm { .. } => "type, factor and unit are for registers by address",
+        SelectError::FunctionClash { .. } => "leave --function out: 3xxxx is 4, 4xxxx is 3",
         SelectError::NoMeter { .. } => "name the meter with --meter, or registers as 0x0000+10",
         SelectError::Malformed { .. } => {
             "registers are written 0x006B, 107, 0x6B+3 or 0x11F:u32/CDAB*0.1=kWh"
@@ -153,6 +226,9 @@ fn open_hint(error: &OpenError) -> Option<String> {
             return Some(format!(
                 "`sudo usermod -aG {group} $USER` and a new login give access"
             ));
+        }
+        OpenError::NotPermitted { group: None, .. } => {
+            "an administrator or a udev rule must let you use it"
         }
         OpenError::Settings { .. } => "try another --baud",
         _ => return None,
@@ -184,6 +260,10 @@ fn failure_hint(failure: &Failure) -> Option<&'static str> {
             "the meter has no such registers, or not as many at once; addresses are as on the \
              wire, from 0 (for 40001 and the like see --numbering modicon)"
         }
-        Failure::Exception(_) | Failure::Port(_) => return None,
+        Failure::Port(_) => {
+            "the adapter was unplugged, or the other side hung up; /dev/serial/by-id has a name \
+             that stays when it comes back"
+        }
+        Failure::Exception(_) => return None,
     })
 }

@@ -17,6 +17,9 @@ pub struct CsvStyle {
     pub terminal: bool,
 }
 
+/// The columns every wide row begins with.
+pub const WIDE_COLUMNS: [&str; 4] = ["time", "meter", "unit_id", "status"];
+
 /// `time,meter,unit_id,status,<point>,...`: empty cells for what is missing.
 pub struct WideCsv<W: Write> {
     out: W,
@@ -39,7 +42,7 @@ impl<W: Write> WideCsv<W> {
             Some(unit) if self.style.units => format!("{} [{unit}]", point.name),
             _ => point.name.clone(),
         });
-        ["time", "meter", "unit_id", "status"]
+        WIDE_COLUMNS
             .map(str::to_owned)
             .into_iter()
             .chain(names)

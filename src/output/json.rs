@@ -36,7 +36,8 @@ fn objects(points: &[Point], row: &Row) -> io::Result<Vec<String>> {
                 unit: point.unit.as_deref(),
                 status: status(reading.as_ref().err().copied()),
             };
-            Ok(serde_json::to_string(&object)?)
+            // The one control character that JSON lets pass.
+            Ok(serde_json::to_string(&object)?.replace('\u{7f}', "\\u007f"))
         })
         .collect()
 }
@@ -92,7 +93,8 @@ impl<W: Write> Sink for Json<W> {
         let start = if self.begun { ",\n" } else { "[\n" };
         self.begun = true;
         let text = format!("{start}{}", objects(points, row)?.join(",\n"));
-        self.out.write_all(text.as_bytes())
+        self.out.write_all(text.as_bytes())?;
+        self.out.flush()
     }
 
     fn finish(&mut self) -> io::Result<()> {

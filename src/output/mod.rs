@@ -14,7 +14,7 @@ use crate::readings::Row;
 
 pub use csv::{LongCsv, WideCsv};
 pub use json::{Json, JsonLines};
-pub use table::Table;
+pub use table::{Heading, Table};
 
 /// Takes rows and prints them.
 pub trait Sink {

@@ -16,18 +16,30 @@ const FOOTNOTE: &str = "* not verified: address or scale was not read in the mak
 /// A table a meter: a heading, the points with values and units, and what is missing and why.
 pub struct Table<W: Write> {
     out: W,
-    /// What stands in every heading behind the unit: the line. `None` leaves headings and
-    /// footnotes out.
-    line: Option<String>,
+    heading: Heading,
     begun: bool,
 }
 
+/// What stands above each table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Heading {
+    /// Meter, unit, line and time, and footnotes below.
+    Full {
+        /// Where the readings come from, `/dev/ttyUSB0 at 9600 8N1`.
+        line: String,
+    },
+    /// Which unit it is.
+    Unit,
+    /// Nothing: there is only one.
+    None,
+}
+
 impl<W: Write> Table<W> {
-    /// Writes to `out`. `line` says where the readings come from, `/dev/ttyUSB0 at 9600 8N1`.
-    pub const fn new(out: W, line: Option<String>) -> Self {
+    /// Writes to `out`.
+    pub const fn new(out: W, heading: Heading) -> Self {
         Self {
             out,
-            line,
+            heading,
             begun: false,
         }
     }
@@ -40,17 +52,21 @@ impl<W: Write> Sink for Table<W> {
             text.push('\n');
         }
         self.begun = true;
-        if let Some(line) = &self.line {
-            let meter = if row.meter.is_empty() {
-                String::new()
-            } else {
-                format!("{}, ", row.meter)
-            };
-            let time = row.time.strftime("%Y-%m-%d %H:%M:%S UTC");
-            text = format!("{text}{meter}unit {} on {line}, {time}\n\n", row.unit);
+        match &self.heading {
+            Heading::Full { line } => {
+                let meter = match row.meter.as_str() {
+                    "" => String::new(),
+                    meter => format!("{meter}, "),
+                };
+                let time = row.time.strftime("%Y-%m-%d %H:%M:%S UTC");
+                text = format!("{text}{meter}unit {} on {line}, {time}\n\n", row.unit);
+            }
+            Heading::Unit => text = format!("{text}unit {}\n", row.unit),
+            Heading::None => {}
         }
         text.push_str(&grid(points, row));
-        if self.line.is_some() && points.iter().any(|point| !point.verified) {
+        let has_footnotes = matches!(self.heading, Heading::Full { .. });
+        if has_footnotes && points.iter().any(|point| !point.verified) {
             text = format!("{text}\n{FOOTNOTE}\n");
         }
         self.out.write_all(text.as_bytes())?;

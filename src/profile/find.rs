@@ -30,6 +30,14 @@ pub enum FindError {
         /// What the system said.
         source: io::Error,
     },
+    /// One of the user's own is named otherwise than its file.
+    #[error("profile {file} has name = \"{name}\", and its file says otherwise")]
+    Misnamed {
+        /// The file.
+        file: String,
+        /// The name in it.
+        name: String,
+    },
     /// The file does not load.
     #[error(transparent)]
     Invalid(#[from] ProfileError),
@@ -48,7 +56,7 @@ pub fn find(meter: &str) -> Result<Profile, FindError> {
     if let Some(path) = own_folder().map(|folder| folder.join(format!("{meter}.toml")))
         && path.is_file()
     {
-        return file(&path);
+        return own(&path);
     }
     match builtin::find(meter) {
         Some(found) => Ok(found.profile()),
@@ -82,6 +90,21 @@ pub fn own_files() -> Vec<PathBuf> {
         .collect();
     files.sort_unstable();
     files
+}
+
+/// Loads one of the user's own: it is found by its file's name, so that must be its name.
+///
+/// # Errors
+/// What [`file`] finds, or [`FindError::Misnamed`].
+pub fn own(path: &Path) -> Result<Profile, FindError> {
+    let profile = file(path)?;
+    if path.file_stem().and_then(|stem| stem.to_str()) == Some(&profile.name) {
+        return Ok(profile);
+    }
+    Err(FindError::Misnamed {
+        file: path.display().to_string(),
+        name: profile.name,
+    })
 }
 
 /// Loads a profile from a file.

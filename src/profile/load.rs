@@ -48,6 +48,9 @@ pub fn load(file: &str, text: &str) -> Result<Profile, ProfileError> {
     })
 }
 
+/// The longest time a profile can give; sums of a few such stay far from any limit.
+const LONGEST_TIME: Duration = Duration::from_secs(24 * 60 * 60);
+
 /// The text being loaded: turns places in it into errors.
 struct Source<'a> {
     file: &'a str,
@@ -114,7 +117,12 @@ impl Source<'_> {
             return Ok(default);
         };
         humantime::parse_duration(text.as_ref())
-            .map_err(|_| self.value(text, key, "a duration with its unit, such as \"500ms\""))
+            .ok()
+            .filter(|time| *time <= LONGEST_TIME)
+            .ok_or_else(|| {
+                let expected = "a duration with its unit, such as \"500ms\", at most 24h";
+                self.value(text, key, expected)
+            })
     }
 }
 

@@ -189,7 +189,7 @@ impl Point {
             .and_then(|printed| times(printed.mantissa(), printed.scale(), self.scale));
         let scaled = match exact.and_then(|product| product.to_string().parse().ok()) {
             Some(scaled) => scaled,
-            None => number * self.scale.to_f64().unwrap_or(1.0),
+            None => number * self.scale.to_f64().ok_or(Missing::Mismatch)?,
         };
         finite(scaled).map(Value::Double)
     }

@@ -1,6 +1,6 @@
 //! What a person types to choose what is read: point names, globs, groups, raw registers.
 
-use std::str::FromStr;
+use std::collections::HashMap;
 
 use rust_decimal::Decimal;
 use thiserror::Error;
@@ -9,7 +9,7 @@ use wildmatch::WildMatch;
 use super::model::Profile;
 use super::point::Point;
 use crate::codec::value::{ByteOrder, RegisterType};
-use crate::codec::{AddressError, ReadFunction, RegisterRange};
+use crate::codec::{AddressError, FunctionCode, ReadFunction, RegisterRange};
 
 /// How register numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,7 +26,7 @@ pub enum Numbering {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SelectError {
     /// Not a name, a group or a register.
-    #[error("'{selector}': {problem}")]
+    #[error("{}{problem}", unless_named(.selector, .problem))]
     Malformed {
         /// What was typed.
         selector: String,
@@ -50,6 +50,16 @@ pub enum SelectError {
         name: String,
         /// Names that look like it.
         near: Vec<String>,
+        /// The groups there are.
+        groups: Vec<String>,
+    },
+    /// A point with what only an address can have.
+    #[error("'{selector}': {name} has its type and unit from the meter's profile")]
+    PointForm {
+        /// What was typed.
+        selector: String,
+        /// The point.
+        name: String,
     },
     /// A group that the meter does not have.
     #[error("{meter} has no group '@{name}'; its groups are {}", .known.join(", "))]
@@ -68,6 +78,20 @@ pub enum SelectError {
         meter: String,
         /// The glob.
         glob: String,
+        /// The groups there are.
+        groups: Vec<String>,
+    },
+    /// A Modicon number of one table, and the function of the other.
+    #[error(
+        "'{selector}' is read with function {implied:02}, and function {typed:02} was asked for"
+    )]
+    FunctionClash {
+        /// What was typed.
+        selector: String,
+        /// The function its number implies.
+        implied: u8,
+        /// The function that was asked for.
+        typed: u8,
     },
     /// A point that can only be written.
     #[error("{name} can only be written")]
@@ -76,7 +100,7 @@ pub enum SelectError {
         name: String,
     },
     /// A point or group, but no meter.
-    #[error("'{selector}' is a point's name, and without a meter there are only raw registers")]
+    #[error("'{selector}' is no register, and without a meter there are no points")]
     NoMeter {
         /// What was typed.
         selector: String,
@@ -89,6 +113,16 @@ pub enum SelectError {
     },
 }
 
+/// The selector, for a problem that does not name it itself.
+fn unless_named(selector: &str, problem: &str) -> String {
+    let quoted = format!("'{selector}'");
+    if problem.starts_with(&quoted) {
+        String::new()
+    } else {
+        format!("{quoted}: ")
+    }
+}
+
 fn nearest(near: &[String]) -> String {
     if near.is_empty() {
         String::new()
@@ -97,26 +131,36 @@ fn nearest(near: &[String]) -> String {
     }
 }
 
+/// How selectors are read.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Reading<'a> {
+    /// How register numbers are written.
+    pub numbering: Numbering,
+    /// The function raw registers are read with, where one was asked for.
+    pub function: Option<ReadFunction>,
+    /// The meter whose points can be named.
+    pub profile: Option<&'a Profile>,
+}
+
 /// The points that `selectors` choose, in their order, each once.
 ///
 /// # Errors
 /// [`SelectError`] for the first selector that chooses nothing.
-pub fn select(
-    selectors: &[String],
-    numbering: Numbering,
-    profile: Option<&Profile>,
-) -> Result<Vec<Point>, SelectError> {
+pub fn select(selectors: &[String], reading: Reading<'_>) -> Result<Vec<Point>, SelectError> {
     let default = [format!("@{}", Profile::DEFAULT_GROUP)];
     let selectors = if selectors.is_empty() {
-        is_default_there(profile)?;
+        is_default_there(reading.profile)?;
         &default
     } else {
         selectors
     };
     let mut points: Vec<Point> = Vec::new();
+    let mut named: HashMap<String, Vec<usize>> = HashMap::new();
     for selector in selectors {
-        for point in one(selector, numbering, profile)? {
-            if !points.contains(&point) {
+        for point in one(selector, reading)? {
+            let alike = named.entry(point.name.clone()).or_default();
+            if !alike.iter().any(|index| points.get(*index) == Some(&point)) {
+                alike.push(points.len());
                 points.push(point);
             }
         }
@@ -135,15 +179,11 @@ fn is_default_there(profile: Option<&Profile>) -> Result<(), SelectError> {
     Err(SelectError::Nothing { reason })
 }
 
-fn one(
-    selector: &str,
-    numbering: Numbering,
-    profile: Option<&Profile>,
-) -> Result<Vec<Point>, SelectError> {
+fn one(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> {
     if selector.starts_with(|first: char| first.is_ascii_digit()) {
-        return registers(selector, numbering);
+        return registers(selector, reading);
     }
-    let Some(profile) = profile else {
+    let Some(profile) = reading.profile else {
         return Err(SelectError::NoMeter {
             selector: selector.to_owned(),
         });
@@ -154,11 +194,7 @@ fn one(
             return Err(SelectError::UnknownGroup {
                 meter,
                 name: name.to_owned(),
-                known: profile
-                    .groups
-                    .iter()
-                    .map(|group| format!("@{}", group.name))
-                    .collect(),
+                known: groups(profile),
             });
         };
         return Ok(group
@@ -176,7 +212,12 @@ fn one(
             .collect();
         if matches.is_empty() {
             let glob = selector.to_owned();
-            return Err(SelectError::NoMatch { meter, glob });
+            let groups = groups(profile);
+            return Err(SelectError::NoMatch {
+                meter,
+                glob,
+                groups,
+            });
         }
         return Ok(matches);
     }
@@ -185,12 +226,30 @@ fn one(
         Some(point) => Err(SelectError::WriteOnly {
             name: point.name.clone(),
         }),
-        None => Err(SelectError::UnknownPoint {
-            meter,
-            name: selector.to_owned(),
-            near: near(selector, profile),
-        }),
+        None => Err(unknown(selector, profile)),
     }
+}
+
+/// Why a name that no point has is refused.
+fn unknown(selector: &str, profile: &Profile) -> SelectError {
+    let name = selector.split([':', '=', '+']).next().unwrap_or_default();
+    if let Some(point) = profile.point(name) {
+        return SelectError::PointForm {
+            selector: selector.to_owned(),
+            name: point.name.clone(),
+        };
+    }
+    SelectError::UnknownPoint {
+        meter: profile.name.clone(),
+        name: selector.to_owned(),
+        near: near(selector, profile),
+        groups: groups(profile),
+    }
+}
+
+fn groups(profile: &Profile) -> Vec<String> {
+    let groups = profile.groups.iter();
+    groups.map(|group| format!("@{}", group.name)).collect()
 }
 
 /// Up to three names that look like `name`, the nearest first.
@@ -211,7 +270,7 @@ fn near(name: &str, profile: &Profile) -> Vec<String> {
 }
 
 /// Raw registers: `ADDRESS[+COUNT][:TYPE[/ORDER]][*FACTOR][=UNIT]`.
-fn registers(selector: &str, numbering: Numbering) -> Result<Vec<Point>, SelectError> {
+fn registers(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> {
     let malformed = |problem: String| SelectError::Malformed {
         selector: selector.to_owned(),
         problem,
@@ -224,13 +283,22 @@ fn registers(selector: &str, numbering: Numbering) -> Result<Vec<Point>, SelectE
     let (rest, factor) = split(rest, '*');
     let (place, form) = split(rest, ':');
     let (start, count) = split(place, '+');
-    let (start, function) = first_register(start, numbering).map_err(malformed)?;
+    let (start, implied) = first_register(start, reading.numbering).map_err(malformed)?;
+    if let (Some(implied), Some(typed)) = (implied, reading.function)
+        && implied != typed
+    {
+        return Err(SelectError::FunctionClash {
+            selector: selector.to_owned(),
+            implied: FunctionCode::from(implied).get(),
+            typed: FunctionCode::from(typed).get(),
+        });
+    }
     let (kind, order) = form
         .map_or(Ok((RegisterType::U16, ByteOrder::Abcd)), type_and_order)
         .map_err(malformed)?;
     let scale = match factor {
         None => Decimal::ONE,
-        Some(text) if kind.is_number() => Decimal::from_str(text)
+        Some(text) if kind.is_number() => Decimal::from_str_exact(text)
             .ok()
             .filter(|factor| !factor.is_zero())
             .ok_or_else(|| malformed(format!("'{text}' is no factor, such as 0.1")))?,
@@ -261,7 +329,7 @@ fn registers(selector: &str, numbering: Numbering) -> Result<Vec<Point>, SelectE
             Ok(Point {
                 scale,
                 unit: unit.map(str::to_owned),
-                function,
+                function: implied.or(reading.function),
                 ..Point::raw(range, kind, order)
             })
         })

@@ -26,16 +26,23 @@ impl Value {
 }
 
 impl fmt::Display for Value {
-    /// Numbers without exponent and without rounding; floats in the shortest form that reads back
-    /// the same.
+    /// Numbers without rounding; floats in the shortest form that reads back the same, the very
+    /// large and the very small with an exponent.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Decimal(number) => number.fmt(f),
-            Self::Single(number) => number.fmt(f),
-            Self::Double(number) => number.fmt(f),
+            Self::Single(number) if is_plain(f64::from(*number)) => number.fmt(f),
+            Self::Single(number) => write!(f, "{number:e}"),
+            Self::Double(number) if is_plain(*number) => number.fmt(f),
+            Self::Double(number) => write!(f, "{number:e}"),
             Self::Text(text) => f.write_str(text),
         }
     }
+}
+
+/// Whether a float is of a size that is written without an exponent.
+fn is_plain(number: f64) -> bool {
+    number == 0.0 || (1e-5..1e16).contains(&number.abs())
 }
 
 /// Why registers that arrived whole hold no value.

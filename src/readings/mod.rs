@@ -12,7 +12,7 @@ use crate::codec::Unit;
 use crate::profile::Value;
 
 pub use fault::Fault;
-pub use take::{Failed, take};
+pub use take::{Trouble, take};
 
 /// One meter read once.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +28,16 @@ pub struct Row {
 }
 
 impl Row {
+    /// A row of `points` readings that are all missing for one reason.
+    pub fn missing(time: Timestamp, meter: &str, unit: Unit, points: usize, fault: Fault) -> Self {
+        Self {
+            time,
+            meter: meter.to_owned(),
+            unit,
+            readings: vec![Err(fault); points],
+        }
+    }
+
     /// The worst fault of the row; `None` when every value is there.
     pub fn worst(&self) -> Option<Fault> {
         self.faults().max()

@@ -44,7 +44,7 @@ impl SimulatedLine {
 
 impl Transport for SimulatedLine {
     fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
-        let now = self.clock.today();
+        let now = self.clock.utc_now();
         for meter in &self.meters {
             if let Some(answer) = meter.answer(frame, now) {
                 self.answers.extend(answer.as_bytes());

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use jiff::Timestamp;
 
-/// Monotonic time for deadlines, and the time of day for readings.
+/// Monotonic time for deadlines, and the time in UTC for readings.
 pub trait Clock: Send + Sync {
     /// Time since some fixed moment; it never goes back.
     fn now(&self) -> Duration;
@@ -12,8 +12,8 @@ pub trait Clock: Send + Sync {
     /// Lets this much time pass.
     fn sleep(&self, time: Duration);
 
-    /// The time of day.
-    fn today(&self) -> Timestamp;
+    /// The time in UTC.
+    fn utc_now(&self) -> Timestamp;
 }
 
 /// The machine's own clocks.
@@ -46,7 +46,7 @@ impl Clock for SystemClock {
         std::thread::sleep(time);
     }
 
-    fn today(&self) -> Timestamp {
+    fn utc_now(&self) -> Timestamp {
         Timestamp::now()
     }
 }

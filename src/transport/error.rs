@@ -47,7 +47,7 @@ pub enum OpenError {
         port: String,
         /// Who owns it and who asks.
         who: String,
-        /// The group that may use it, where it can be told.
+        /// The group whose members may use it, where there is one.
         group: Option<String>,
     },
     /// The port does not do this speed or format.

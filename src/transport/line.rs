@@ -61,9 +61,9 @@ impl Line {
         self.clock.now()
     }
 
-    /// The time of day.
-    pub fn today(&self) -> Timestamp {
-        self.clock.today()
+    /// The time in UTC.
+    pub fn utc_now(&self) -> Timestamp {
+        self.clock.utc_now()
     }
 
     /// The pace of this line.
@@ -106,9 +106,9 @@ impl Line {
     /// # Errors
     /// [`TransportError`] when the port is gone.
     pub fn send(&mut self, frame: &[u8]) -> Result<Duration, TransportError> {
-        let start = self.now();
         self.transport.send(frame)?;
-        self.quiet_since = start + self.timing.transfer_time(frame.len());
+        // Counted from when the write is over: however long it was held up, never too early.
+        self.quiet_since = self.now() + self.timing.transfer_time(frame.len());
         Ok(self.quiet_since)
     }
 

@@ -41,3 +41,17 @@ pub trait Transport: Send {
     /// [`TransportError`] when the medium is gone.
     fn discard_input(&mut self) -> Result<(), TransportError>;
 }
+
+impl Transport for Box<dyn Transport> {
+    fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
+        (**self).send(frame)
+    }
+
+    fn receive(&mut self, into: &mut [u8], wait: Duration) -> Result<usize, TransportError> {
+        (**self).receive(into, wait)
+    }
+
+    fn discard_input(&mut self) -> Result<(), TransportError> {
+        (**self).discard_input()
+    }
+}

@@ -169,10 +169,18 @@ const NOT_A_TTY: &str = "Not a typewriter";
 fn not_permitted(port: String) -> OpenError {
     use std::os::unix::fs::MetadataExt;
 
-    let group = std::fs::metadata(&port)
-        .ok()
-        .and_then(|found| uzers::get_group_by_gid(found.gid()))
-        .map(|group| group.name().to_string_lossy().into_owned());
+    /// Mode bits that let a group read and write.
+    const GROUP_MAY: u32 = 0o060;
+
+    let found = std::fs::metadata(&port).ok();
+    let name = |gid| {
+        let group = uzers::get_group_by_gid(gid)?;
+        Some(group.name().to_string_lossy().into_owned())
+    };
+    let owner = found.as_ref().and_then(|found| name(found.gid()));
+    // Nobody should be told to join root's group, nor one that would not help.
+    let helps =
+        found.is_some_and(|found| found.gid() != 0 && found.mode() & GROUP_MAY == GROUP_MAY);
     let user = uzers::get_effective_username().map_or_else(
         || format!("uid {}", uzers::get_effective_uid()),
         |name| name.to_string_lossy().into_owned(),
@@ -189,14 +197,14 @@ fn not_permitted(port: String) -> OpenError {
     } else {
         groups.join(", ")
     };
-    let owner = group.as_ref().map_or_else(
+    let whose = owner.as_ref().map_or_else(
         || "an unknown group".to_owned(),
         |group| format!("group {group}"),
     );
     OpenError::NotPermitted {
         port,
-        who: format!("it belongs to {owner}, and user {user} is in {member}"),
-        group,
+        who: format!("it belongs to {whose}, and user {user} is in {member}"),
+        group: owner.filter(|_| helps),
     }
 }
 

@@ -37,8 +37,9 @@ impl<T: Transport> Traced<T> {
 
 impl<T: Transport> Transport for Traced<T> {
     fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
+        self.inner.send(frame)?;
         self.log('>', frame);
-        self.inner.send(frame)
+        Ok(())
     }
 
     fn receive(&mut self, into: &mut [u8], wait: Duration) -> Result<usize, TransportError> {
@@ -51,19 +52,5 @@ impl<T: Transport> Transport for Traced<T> {
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
         self.inner.discard_input()
-    }
-}
-
-impl Transport for Box<dyn Transport> {
-    fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
-        (**self).send(frame)
-    }
-
-    fn receive(&mut self, into: &mut [u8], wait: Duration) -> Result<usize, TransportError> {
-        (**self).receive(into, wait)
-    }
-
-    fn discard_input(&mut self) -> Result<(), TransportError> {
-        (**self).discard_input()
     }
 }

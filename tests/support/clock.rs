@@ -46,7 +46,7 @@ impl Clock for FakeClock {
         self.advance(time);
     }
 
-    fn today(&self) -> Timestamp {
+    fn utc_now(&self) -> Timestamp {
         self.start + self.now()
     }
 }

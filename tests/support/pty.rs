@@ -2,17 +2,20 @@
 
 #![allow(dead_code, reason = "each test file uses its own share")]
 
-use std::io::{ErrorKind, Read, Write};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::error::Error;
+use std::fs::File;
+use std::io::{Read, Write};
+use std::os::fd::OwnedFd;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
-use std::time::Duration;
 
 use meterpoll::codec::length::{self, Direction};
 use meterpoll::codec::{
     Destination, ExceptionCode, ReadValues, Reply, Request, Response, Unit, UnitRange, rtu,
 };
-use serialport::{SerialPort, TTYPort};
+use rustix::fs::{Mode, OFlags, open};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 /// What a meter does with a request: the bytes it answers, if any.
 pub(crate) type Behaviour = dyn FnMut(&[u8]) -> Vec<u8> + Send;
@@ -21,49 +24,51 @@ pub(crate) type Behaviour = dyn FnMut(&[u8]) -> Vec<u8> + Send;
 pub(crate) struct PtyMeter {
     path: String,
     seen: Arc<Mutex<Vec<Vec<u8>>>>,
-    stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
-    // Held open, so that the line does not hang up between two clients.
-    _slave: TTYPort,
+    /// Held open, so that the line does not hang up between two clients.
+    slave: Option<OwnedFd>,
 }
 
 impl PtyMeter {
     /// A meter that does with every request what `behaviour` says.
-    pub(crate) fn new(mut behaviour: Box<Behaviour>) -> Self {
-        let (mut master, slave) = TTYPort::pair().expect("a pty pair");
-        let path = slave.name().expect("a pty has a path");
+    pub(crate) fn new(behaviour: Box<Behaviour>) -> Self {
+        Self::start(behaviour, usize::MAX)
+    }
+
+    /// A line that hangs up in place of an answer to this request, counted from 1.
+    pub(crate) fn hanging_up_after(requests: usize) -> Self {
+        Self::start(Box::new(|_| Vec::new()), requests)
+    }
+
+    fn start(mut behaviour: Box<Behaviour>, last: usize) -> Self {
+        let (mut master, slave, path) = pair().expect("a pty pair");
         let seen = Arc::new(Mutex::new(Vec::new()));
-        let stop = Arc::new(AtomicBool::new(false));
-        let (requests, stopped) = (Arc::clone(&seen), Arc::clone(&stop));
+        let requests = Arc::clone(&seen);
         let thread = std::thread::spawn(move || {
-            master
-                .set_timeout(Duration::from_millis(20))
-                .expect("a time-out is only stored");
             let mut bytes = Vec::new();
             let mut chunk = [0; 256];
-            while !stopped.load(Ordering::Relaxed) {
-                match master.read(&mut chunk) {
-                    Ok(count) => bytes.extend_from_slice(&chunk[..count]),
-                    Err(error) if error.kind() == ErrorKind::TimedOut => continue,
-                    Err(_) => return,
-                }
-                // Two requests can come in one read when the machine is busy.
+            // Reading fails when nobody has the other end open any more.
+            while let Ok(count) = master.read(&mut chunk) {
+                bytes.extend_from_slice(&chunk[..count]);
                 while let Some(length) = length::of_frame(&bytes, Direction::Request)
-                    && length <= bytes.len()
+                    && bytes.len() >= length
                 {
                     let request: Vec<u8> = bytes.drain(..length).collect();
-                    let answer = behaviour(&request);
-                    requests.lock().expect("nobody panicked").push(request);
-                    let _ = master.write_all(&answer);
+                    let mut requests = requests.lock().expect("nobody panicked");
+                    requests.push(request.clone());
+                    if requests.len() == last {
+                        return;
+                    }
+                    drop(requests);
+                    let _ = master.write_all(&behaviour(&request));
                 }
             }
         });
         Self {
             path,
             seen,
-            stop,
             thread: Some(thread),
-            _slave: slave,
+            slave: Some(slave),
         }
     }
 
@@ -87,11 +92,26 @@ impl PtyMeter {
 
 impl Drop for PtyMeter {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
+        drop(self.slave.take());
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
     }
+}
+
+/// Both ends of a raw pty and the path of the second; no child process inherits either.
+fn pair() -> Result<(File, OwnedFd, String), Box<dyn Error>> {
+    let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
+    let master = openpt(flags)?;
+    grantpt(&master)?;
+    unlockpt(&master)?;
+    let path = ptsname(&master, Vec::new())?.into_string()?;
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+    let slave = open(path.as_str(), flags, Mode::empty())?;
+    let mut attributes = tcgetattr(&slave)?;
+    attributes.make_raw();
+    tcsetattr(&slave, OptionalActions::Now, &attributes)?;
+    Ok((File::from(master), slave, path))
 }
 
 /// What register `address` of a healthy meter holds: different for every address.

@@ -62,7 +62,7 @@ fn turn(
         _ if count == 0 => std::mem::take(heard),
         _ => return Ok(()),
     };
-    match meter.answer(&request, clock.today()) {
+    match meter.answer(&request, clock.utc_now()) {
         Some(answer) => line.send(answer.as_bytes()),
         None => Ok(()),
     }
