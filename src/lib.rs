@@ -16,6 +16,17 @@
 //! A register address is the 0-based protocol address everywhere; other notations are parsed where
 //! they are typed.
 
+// The library reports and does not stop the program; where it cannot come to that, an `expect`
+// gives the proof. Tests may stop as they like.
+#![warn(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unreachable,
+    clippy::todo,
+    clippy::unimplemented
+)]
+
 pub mod cli;
 pub mod client;
 pub mod codec;

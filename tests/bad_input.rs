@@ -3,15 +3,12 @@
 
 mod support {
     pub(crate) mod program;
-    pub(crate) mod pty;
 }
 
 use std::fs;
-use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use support::program::Program;
-use support::pty::PtyMeter;
 
 /// A file of its own in the folder cargo gives tests.
 fn file(name: &str, text: &str) -> PathBuf {
@@ -125,6 +122,7 @@ fn a_profile_that_does_not_parse_is_named_with_line_and_key() {
         .run();
 }
 
+#[cfg(unix)]
 #[test]
 fn a_profile_that_is_not_there_is_named() {
     Program::new("read-registers -p sim: -a 1 --meter ./nowhere.toml")
@@ -134,148 +132,6 @@ fn a_profile_that_is_not_there_is_named() {
              because: No such file or directory (os error 2)\n",
         )
         .run();
-}
-
-#[test]
-fn a_meter_of_ones_own_is_found_by_name_in_the_configuration_folder() {
-    let home = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("own");
-    let folder = home.join("meterpoll/meters");
-    fs::create_dir_all(&folder).expect("the folder for tests is writable");
-    fs::write(
-        folder.join("mine.toml"),
-        "name = \"mine\"\ntitle = \"My meter\"\nmanual = \"none\"\n\
-         groups.default = [\"b\"]\n\n[[points]]\nname = \"b\"\naddress = 0x10\ntype = \"u16\"\n\
-         scale = 0.1\nunit = \"V\"\n",
-    )
-    .expect("the folder for tests is writable");
-    let meter = PtyMeter::healthy(1);
-    Program::new(&format!(
-        "read-registers -p {} -a 1 --meter mine -f csv",
-        meter.path()
-    ))
-    .variable("XDG_CONFIG_HOME", &home)
-    .stdout("time,meter,unit_id,status,b\n<time>,mine,1,ok,11.5\n")
-    .run();
-}
-
-#[test]
-fn a_directory_or_a_file_is_no_port() {
-    Program::new("read-registers -p /tmp -a 1 0")
-        .code(3)
-        .stderr(
-            "error: port /tmp is a directory, not a serial port\n\
-             hint: `meterpoll ports` lists the ports\n",
-        )
-        .run();
-    Program::new("read-registers -p /etc/passwd -a 1 0")
-        .code(3)
-        .stderr(
-            "error: port /etc/passwd is a file, not a serial port\n\
-             hint: `meterpoll ports` lists the ports\n",
-        )
-        .run();
-    Program::new("read-registers -p /dev/null -a 1 0")
-        .code(3)
-        .stderr(
-            "error: port /dev/null is a device without line settings, not a serial port\n\
-             hint: `meterpoll ports` lists the ports\n",
-        )
-        .run();
-}
-
-#[test]
-fn a_port_that_is_not_there_says_so() {
-    Program::new("read-registers -p /dev/ttyNOWHERE -a 1 0")
-        .code(3)
-        .stderr(
-            "error: port /dev/ttyNOWHERE is not there\n\
-             hint: `meterpoll ports` lists the ports; plugging an adapter in shows a new one (a \
-             program such as brltty can take it away again)\n",
-        )
-        .run();
-}
-
-#[test]
-fn a_port_that_another_program_holds_is_busy() {
-    let meter = PtyMeter::healthy(1);
-    let held = serialport::new(meter.path(), 9600)
-        .open()
-        .expect("nobody else has it");
-    Program::new(&format!(
-        "read-registers -p {} -a 1 0 --wait 0s",
-        meter.path()
-    ))
-    .code(3)
-    .stderr(format!(
-        "error: port {} is in use by another program\n\
-             hint: another program has it open, a cron job or ModemManager perhaps; --wait 30s \
-             waits longer\n",
-        meter.path()
-    ))
-    .run();
-    assert_eq!(meter.requests().len(), 0);
-    drop(held);
-}
-
-#[test]
-fn a_port_that_becomes_free_in_time_is_used() {
-    let meter = PtyMeter::healthy(1);
-    let held = serialport::new(meter.path(), 9600)
-        .open()
-        .expect("nobody else has it");
-    let program = Program::new(&format!("read-registers -p {} -a 1 0 -q", meter.path()));
-    let waiting =
-        std::thread::spawn(move || program.stdout("POINT   VALUE  UNIT\n0x0000      3\n").run());
-    drop(held);
-    waiting.join().expect("the run compares equal");
-}
-
-#[cfg(unix)]
-#[test]
-fn a_port_that_is_not_permitted_names_its_group_and_the_user() {
-    use std::os::unix::fs::{MetadataExt, PermissionsExt};
-    use std::os::unix::process::CommandExt;
-
-    let meter = PtyMeter::healthy(1);
-    fs::set_permissions(meter.path(), fs::Permissions::from_mode(0o000)).expect("our own pty");
-    // Root may open anything, so as root the program runs as nobody, from where nobody reaches it.
-    let is_root = fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0);
-    let program = Program::new(&format!("read-registers -p {} -a 1 0", meter.path()));
-    let mut command = program.command();
-    if is_root {
-        let copy = std::env::temp_dir().join(format!("meterpoll-nobody-{}", std::process::id()));
-        fs::copy(support::program::binary(), &copy).expect("a copy for nobody");
-        let mut as_nobody = std::process::Command::new(&copy);
-        as_nobody
-            .args(command.get_args())
-            .uid(65534)
-            .gid(65534)
-            .current_dir("/");
-        command = as_nobody;
-    }
-    let output = loop {
-        match command.output() {
-            // Another test that forks just now holds the copy open for a moment.
-            Err(error) if error.kind() == ErrorKind::ExecutableFileBusy => std::thread::yield_now(),
-            result => break result.expect("the program starts"),
-        }
-    };
-    let stderr = String::from_utf8(output.stderr).expect("text");
-    assert_eq!(output.status.code(), Some(3), "{stderr}");
-    assert!(output.stdout.is_empty());
-    let start = format!(
-        "error: port {} is not permitted: it belongs to group ",
-        meter.path()
-    );
-    assert!(stderr.starts_with(&start), "{stderr}");
-    assert!(stderr.contains(", and user "), "{stderr}");
-    assert!(
-        stderr.ends_with("\nhint: an administrator or a udev rule must let you use it\n"),
-        "{stderr}"
-    );
-    if is_root {
-        let _ = fs::remove_file(command.get_program());
-    }
 }
 
 #[test]
@@ -291,16 +147,11 @@ fn a_time_without_unit_is_refused() {
 }
 
 #[test]
-fn without_a_port_the_option_and_its_variable_are_named() {
+fn without_a_port_the_option_is_named() {
     let output = Program::new("read-registers -a 1 0").output();
     assert_eq!(output.status.code(), Some(2));
     let stderr = String::from_utf8(output.stderr).expect("text");
     assert!(stderr.contains("--port <PORT>"), "{stderr}");
-    let meter = PtyMeter::healthy(1);
-    Program::new("read-registers -a 1 0 -q")
-        .variable("METERPOLL_PORT", meter.path())
-        .stdout("POINT   VALUE  UNIT\n0x0000      3\n")
-        .run();
 }
 
 #[test]
@@ -341,8 +192,7 @@ fn a_line_over_tcp_is_refused_in_so_many_words() {
 fn a_full_disk_is_exit_7_and_a_closed_pipe_is_quiet() {
     use std::process::Stdio;
 
-    let meter = PtyMeter::healthy(1);
-    let program = Program::new(&format!("read-registers -p {} -a 1 0 -f csv", meter.path()));
+    let program = Program::new("read-registers -p sim: -a 17 0 -f csv");
     let full = fs::OpenOptions::new()
         .write(true)
         .open("/dev/full")

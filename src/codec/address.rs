@@ -72,11 +72,22 @@ impl fmt::Display for Unit {
 /// answered cannot be broadcast: [`super::rtu::encode_broadcast`] takes only a
 /// [`super::Write`].
 ///
-/// ```compile_fail
-/// use meterpoll::codec::{Broadcast, ReadFunction, RegisterRange, Request, rtu};
+/// ```
+/// use meterpoll::codec::{Broadcast, ReadFunction, RegisterRange, Request, Unit, UnitRange, rtu};
+/// let meter = Unit::new(17, UnitRange::Standard).unwrap();
 /// let range = RegisterRange::new(0, 1).unwrap();
 /// let read = Request::Read { function: ReadFunction::HoldingRegisters, range };
-/// rtu::encode_request(Broadcast, &read);
+/// rtu::encode_request(meter, &read);
+/// ```
+///
+/// The same to all meters does not compile:
+///
+/// ```compile_fail,E0308
+/// use meterpoll::codec::{Broadcast, ReadFunction, RegisterRange, Request, Unit, UnitRange, rtu};
+/// let meter = Broadcast;
+/// let range = RegisterRange::new(0, 1).unwrap();
+/// let read = Request::Read { function: ReadFunction::HoldingRegisters, range };
+/// rtu::encode_request(meter, &read);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Broadcast;

@@ -197,10 +197,13 @@ fn not_permitted(port: String) -> OpenError {
     } else {
         groups.join(", ")
     };
-    let group = owner.as_deref().unwrap_or("an unknown group");
+    let whose = owner.as_ref().map_or_else(
+        || "an unknown group".to_owned(),
+        |group| format!("group {group}"),
+    );
     OpenError::NotPermitted {
         port,
-        who: format!("it belongs to group {group}, and user {user} is in {member}"),
+        who: format!("it belongs to {whose}, and user {user} is in {member}"),
         group: owner.filter(|_| helps),
     }
 }
