@@ -3,6 +3,10 @@
 //! [`Arguments`].
 
 mod line;
+#[allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "its doc comments are help texts, where [default: ...] is no link"
+)]
 mod read_registers;
 mod usage;
 mod values;

@@ -95,7 +95,7 @@ pub fn own_files() -> Vec<PathBuf> {
 /// Loads one of the user's own: it is found by its file's name, so that must be its name.
 ///
 /// # Errors
-/// What [`file`] finds, or [`FindError::Misnamed`].
+/// What [`file()`] finds, or [`FindError::Misnamed`].
 pub fn own(path: &Path) -> Result<Profile, FindError> {
     let profile = file(path)?;
     if path.file_stem().and_then(|stem| stem.to_str()) == Some(&profile.name) {
