@@ -269,7 +269,7 @@ fn text_loses_trailing_spaces_and_nuls_and_no_others() {
 #[test]
 fn text_shows_bytes_that_are_not_ascii_in_hex() {
     assert_eq!(text(4, &[0x41E9, 0xFF42]), "A\\xE9\\xFFB");
-    assert_eq!(text(2, &[0x7F80]), "\u{7F}?");
+    assert_eq!(text(2, &[0x7F80]), "\u{7F}\\x80");
 }
 
 #[test]

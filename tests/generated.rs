@@ -7,7 +7,7 @@ use std::{env, fs};
 
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
-use meterpoll::cli::{Arguments, completion_script};
+use meterpoll::cli::{Arguments, EXIT_CODES, completion_script};
 
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
@@ -61,7 +61,7 @@ fn completions_say_what_the_program_takes() {
 
 #[test]
 fn there_is_a_man_page_for_every_command() {
-    let mut command = Arguments::command();
+    let mut command = Arguments::command().disable_help_subcommand(true);
     command.build();
     let mut files = BTreeMap::new();
     pages(&command, &mut files);
@@ -72,23 +72,41 @@ fn pages(command: &Command, files: &mut BTreeMap<String, Vec<u8>>) {
     // clap keeps names for the whole run.
     let name = command.get_display_name().unwrap_or(command.get_name());
     let name: &'static str = name.to_owned().leak();
+    files.insert(format!("{name}.1"), page(command, name).into_bytes());
+    for inner in command.get_subcommands() {
+        pages(inner, files);
+    }
+}
+
+/// One page: what the generator makes of the options, and the examples and exit codes, which it
+/// would run together.
+fn page(command: &Command, name: &'static str) -> String {
+    let examples = command.get_after_help().map(ToString::to_string);
     let mut page = Vec::new();
     clap_mangen::Man::new(command.clone().name(name))
         .render(&mut page)
         .expect("writing to memory");
-    // The generator ends some lines in spaces.
     let text = String::from_utf8(page).expect("text");
-    let lines: String = text
+    let body = text.split(".SH EXTRA").next().unwrap_or_default();
+    let body = body.split(".SH VERSION").next().unwrap_or_default();
+    // The generator ends some lines in spaces.
+    let mut page: String = body
         .lines()
         .flat_map(|line| [line.trim_end(), "\n"])
         .collect();
-    files.insert(format!("{name}.1"), lines.into_bytes());
-    for inner in command
-        .get_subcommands()
-        .filter(|inner| inner.get_name() != "help")
-    {
-        pages(inner, files);
+    if let Some(examples) = examples {
+        page.push_str(".SH EXAMPLES\n.nf\n");
+        for line in examples.lines().filter(|line| line.starts_with("  ")) {
+            page.push_str(&line.trim_start().replace('-', "\\-"));
+            page.push('\n');
+        }
+        page.push_str(".fi\n");
     }
+    page.push_str(".SH \"EXIT STATUS\"\n");
+    for (code, meaning) in EXIT_CODES {
+        page.extend([".TP\n", &code.to_string(), "\n", meaning, "\n"]);
+    }
+    page
 }
 
 #[test]

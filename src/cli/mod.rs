@@ -19,6 +19,29 @@ pub use read_registers::{FormatChoice, FunctionChoice, Layout, NumberingChoice, 
 pub use usage::{Usage, completion_script, parse};
 pub use values::Units;
 
+/// What the program ends with, code by code.
+pub const EXIT_CODES: [(u8, &str); 8] = [
+    (0, "everything asked for was done"),
+    (1, "some readings are missing"),
+    (
+        2,
+        "command line or profile wrong, or refused before sending",
+    ),
+    (3, "port: not there, busy, not permitted, lost"),
+    (4, "no valid answer: silence, damaged or mismatched frames"),
+    (5, "the meter refused"),
+    (6, "outcome of a write unknown"),
+    (7, "output could not be written"),
+];
+
+const AFTER_HELP: &str = "\
+Exit codes: 0 done, 1 some readings missing, 2 wrong command line, 3 port,
+4 no valid answer, 5 refused by the meter, 6 outcome of a write unknown,
+7 output not written.
+
+Try it without a meter:
+  meterpoll read-registers --port sim: --unit 17 --meter pqm";
+
 /// Reads electricity meters over Modbus RTU, in points and units.
 #[derive(Debug, Parser)]
 #[command(
@@ -27,10 +50,7 @@ pub use values::Units;
     propagate_version = true,
     help_expected = true,
     arg_required_else_help = true,
-    after_help = "Exit codes: 0 done, 1 some readings missing, 2 wrong command line, 3 port, \
-                  4 no valid answer, 5 refused by the meter, 6 outcome of a write unknown, \
-                  7 output not written.\n\n\
-                  Try it without a meter: meterpoll read-registers --port sim: --unit 17 --meter pqm"
+    after_help = AFTER_HELP
 )]
 pub struct Arguments {
     /// What to do.

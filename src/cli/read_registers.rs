@@ -5,15 +5,17 @@ use clap::{Args, ValueEnum};
 use super::line::LineArguments;
 use super::values::Units;
 
-/// Arguments of `read-registers`.
-#[derive(Debug, Args)]
-#[command(after_help = "\
+const EXAMPLES: &str = "\
 Examples:
   meterpoll read-registers -p sim: -a 17 --meter pqm
   meterpoll read-registers -p /dev/ttyUSB0 -a 17 --meter pqm 'current_*' frequency
   meterpoll read-registers -p /dev/ttyUSB0 -a 1-5 --meter pqm @energy -f csv
   meterpoll read-registers -p /dev/ttyUSB0 -b 19200 -P even -a 1 0x0000+10
-  meterpoll read-registers -p /dev/ttyUSB0 -a 1 '0x11F:u32/CDAB*0.1=kWh'")]
+  meterpoll read-registers -p /dev/ttyUSB0 -a 1 '0x11F:u32/CDAB*0.1=kWh'";
+
+/// Arguments of `read-registers`.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
 pub struct ReadRegisters {
     /// Points (`current_a`), globs (`current_*`), groups (`@energy`), or registers by address
     /// (`0x006B`, `107`, `0x6B+3`, `0x11F:u32/CDAB*0.1=kWh`) [default: the meter's @default group]
