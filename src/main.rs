@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    meterpoll::commands::run(std::env::args_os()).into()
+    meterpoll::commands::run(std::env::args_os()).end()
 }

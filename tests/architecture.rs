@@ -44,7 +44,7 @@ const LAYERS: [(&str, &[&str]); 12] = [
 const EVERYWHERE: &[&str] = &[""];
 
 /// The libraries of `[dependencies]` and the files and folders whose job they are.
-const LIBRARIES: [(&str, &[&str]); 19] = [
+const LIBRARIES: [(&str, &[&str]); 20] = [
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("comfy_table", &["output/columns.rs"]),
@@ -59,6 +59,7 @@ const LIBRARIES: [(&str, &[&str]); 19] = [
     ("serde", EVERYWHERE),
     ("serde_json", &["output/json.rs"]),
     ("serialport", &["transport/ports.rs", "transport/serial.rs"]),
+    ("signal_hook", &["commands/signals.rs"]),
     ("strsim", &["profile/"]),
     ("thiserror", EVERYWHERE),
     (

@@ -260,3 +260,47 @@ fn named_points_are_read_as_the_meter_wants_whatever_function_is_typed() {
         )
         .run();
 }
+
+#[test]
+fn a_signal_lets_the_row_in_hand_be_finished_and_a_second_one_does_not() {
+    use std::os::unix::process::ExitStatusExt;
+    use std::process::{Command, Stdio};
+    use std::time::Instant;
+
+    /// Longer than any test machine takes to start the program and to deliver a signal.
+    const ANSWER: Duration = Duration::from_millis(1500);
+
+    for (signal, number) in [("INT", 2), ("TERM", 15)] {
+        for is_second in [false, true] {
+            let meter = PtyMeter::new(Box::new(|request| {
+                std::thread::sleep(ANSWER);
+                pty::answer(u16::from(request[0]), request).unwrap_or_default()
+            }));
+            let arguments = format!("read-registers -p {} -a 1-9 5 -f csv -t 20s", meter.path());
+            let mut child = Program::new(&arguments)
+                .command()
+                .stdout(Stdio::piped())
+                .spawn()
+                .expect("the program starts");
+            let start = Instant::now();
+            while meter.requests().is_empty() && start.elapsed() < Duration::from_secs(20) {
+                std::thread::yield_now();
+            }
+            let pid = child.id().to_string();
+            let kill = || {
+                let status = Command::new("kill").args(["-s", signal, &pid]).status();
+                assert!(status.expect("kill is there").success());
+            };
+            kill();
+            // Two that come at once are one to the system.
+            while is_second && child.try_wait().expect("a child").is_none() {
+                kill();
+            }
+            let output = child.wait_with_output().expect("it ends");
+            assert_eq!(output.status.signal(), Some(number));
+            let stdout = without_times(&String::from_utf8(output.stdout).expect("CSV is text"));
+            let row = format!("{HEADER}<time>,,1,ok,38\n");
+            assert_eq!(stdout, if is_second { String::new() } else { row });
+        }
+    }
+}

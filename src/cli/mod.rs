@@ -20,7 +20,7 @@ pub use usage::{Usage, completion_script, parse};
 pub use values::Units;
 
 /// What the program ends with, code by code.
-pub const EXIT_CODES: [(u8, &str); 8] = [
+pub const EXIT_CODES: [(u8, &str); 10] = [
     (0, "everything asked for was done"),
     (1, "some readings are missing"),
     (
@@ -32,6 +32,11 @@ pub const EXIT_CODES: [(u8, &str); 8] = [
     (5, "the meter refused"),
     (6, "outcome of a write unknown"),
     (7, "output could not be written"),
+    (130, "stopped by SIGINT, after the row in hand was finished"),
+    (
+        143,
+        "stopped by SIGTERM, after the row in hand was finished",
+    ),
 ];
 
 const AFTER_HELP: &str = "\

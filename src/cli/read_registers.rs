@@ -8,7 +8,7 @@ use super::values::Units;
 const EXAMPLES: &str = "\
 Examples:
   meterpoll read-registers -p sim: -a 17 --meter pqm
-  meterpoll read-registers -p /dev/ttyUSB0 -a 17 --meter pqm 'current_*' frequency
+  meterpoll read-registers -p /dev/ttyUSB0 -a 17 --meter pqm 'current_*'
   meterpoll read-registers -p /dev/ttyUSB0 -a 1-5 --meter pqm @energy -f csv
   meterpoll read-registers -p /dev/ttyUSB0 -b 19200 -P even -a 1 0x0000+10
   meterpoll read-registers -p /dev/ttyUSB0 -a 1 '0x11F:u32/CDAB*0.1=kWh'";

@@ -1,5 +1,6 @@
 //! What the program ends with.
 
+use super::signals;
 use crate::readings::Fault;
 
 /// The exit codes that scripts rely on.
@@ -22,9 +23,19 @@ pub enum ExitCode {
     WriteUnknown = 6,
     /// Output could not be written.
     Output = 7,
+    /// Stopped by SIGINT, after the row in hand was finished.
+    Interrupted = 130,
+    /// Stopped by SIGTERM, after the row in hand was finished.
+    Terminated = 143,
 }
 
 impl ExitCode {
+    /// Ends the process: for a signal as the signal would have, else with the code returned.
+    pub fn end(self) -> std::process::ExitCode {
+        signals::die(self);
+        (self as u8).into()
+    }
+
     /// What a whole run amounts to: `delivered` readings and these faults.
     pub(super) fn of(delivered: usize, faults: &[Fault]) -> Self {
         let Some(worst) = faults.iter().max() else {
@@ -40,11 +51,5 @@ impl ExitCode {
             // The meter answered well; it has no such values.
             Fault::Overflow | Fault::Absent => Self::SomeMissing,
         }
-    }
-}
-
-impl From<ExitCode> for std::process::ExitCode {
-    fn from(code: ExitCode) -> Self {
-        Self::from(code as u8)
     }
 }

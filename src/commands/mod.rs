@@ -10,6 +10,7 @@ mod open_line;
 mod ports;
 mod read_registers;
 mod report;
+mod signals;
 
 use std::ffi::OsString;
 use std::io::{self, Write};

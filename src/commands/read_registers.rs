@@ -5,6 +5,7 @@ use std::io::{self, IsTerminal, Write};
 
 use super::open_line::LinePlan;
 use super::report::{self, Place, Report};
+use super::signals::Stop;
 use super::{CommandError, ExitCode, print};
 use crate::cli::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
 use crate::client::{Client, Patience};
@@ -40,6 +41,7 @@ pub(super) fn run(
         return print(frames(&units, &plan).as_bytes());
     }
 
+    let stop = Stop::listen().map_err(CommandError::Signals)?;
     let mut client = line.open()?;
     let round = Round {
         units: &units,
@@ -48,6 +50,7 @@ pub(super) fn run(
         plan: &plan,
         patience: line.patience(&limits),
         line: &line.name(),
+        stop: &stop,
     };
     let result = read(arguments, &round, &mut client, report);
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
@@ -64,6 +67,7 @@ struct Round<'a> {
     plan: &'a Plan,
     patience: Patience,
     line: &'a str,
+    stop: &'a Stop,
 }
 
 fn read(
@@ -94,12 +98,16 @@ fn read(
         sink.row(round.points, &row).map_err(CommandError::Output)?;
         faults.extend(row.faults());
         delivered += row.readings.len() - row.faults().count();
+        if round.stop.requested().is_some() {
+            break;
+        }
     }
     sink.finish().map_err(CommandError::Output)?;
     if lost > 1 {
         report::untried_units(lost - 1);
     }
-    Ok(ExitCode::of(delivered, &faults))
+    let whole = ExitCode::of(delivered, &faults);
+    Ok(round.stop.requested().unwrap_or(whole))
 }
 
 /// Reads one unit and tells what went wrong.

@@ -162,7 +162,7 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::Find(_)
         | CommandError::Tcp { .. } => ExitCode::Usage,
         CommandError::Open(_) | CommandError::Lost(_) | CommandError::Ports(_) => ExitCode::Port,
-        CommandError::Output(_) => ExitCode::Output,
+        CommandError::Output(_) | CommandError::Signals(_) => ExitCode::Output,
     }
 }
 

@@ -1,0 +1,55 @@
+//! SIGINT and SIGTERM: the row in hand is finished first. The second one ends the program at once.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+
+use super::ExitCode;
+
+/// Raised when the program is to stop.
+pub(super) struct Stop {
+    interrupted: Arc<AtomicBool>,
+    terminated: Arc<AtomicBool>,
+}
+
+impl Stop {
+    /// Listens from now on.
+    pub(super) fn listen() -> io::Result<Self> {
+        let stop = Self {
+            interrupted: Arc::default(),
+            terminated: Arc::default(),
+        };
+        for (signal, raised) in [(SIGINT, &stop.interrupted), (SIGTERM, &stop.terminated)] {
+            // In this order: the first signal finds the flag down and raises it.
+            flag::register_conditional_default(signal, Arc::clone(raised))?;
+            flag::register(signal, Arc::clone(raised))?;
+        }
+        Ok(stop)
+    }
+
+    /// What to end with, once a signal has come.
+    pub(super) fn requested(&self) -> Option<ExitCode> {
+        if self.terminated.load(Ordering::Relaxed) {
+            Some(ExitCode::Terminated)
+        } else if self.interrupted.load(Ordering::Relaxed) {
+            Some(ExitCode::Interrupted)
+        } else {
+            None
+        }
+    }
+}
+
+/// Ends the process as the signal would have, so that a shell sees it; returns where that cannot
+/// be done.
+pub(super) fn die(code: ExitCode) {
+    let signal = match code {
+        ExitCode::Interrupted => SIGINT,
+        ExitCode::Terminated => SIGTERM,
+        _ => return,
+    };
+    // Where it fails, the exit code still tells.
+    let _ = signal_hook::low_level::emulate_default_handler(signal);
+}
