@@ -75,6 +75,46 @@ fn the_profile_shown_loads() {
     assert_eq!(profile.points.len(), 2);
 }
 
+/// The source that describes the keys of a profile.
+const FORMAT: &str = include_str!("../src/profile/format.rs");
+
+/// The profile in its documentation.
+fn documented() -> String {
+    FORMAT
+        .lines()
+        .skip_while(|line| *line != "//! ```toml")
+        .skip(1)
+        .take_while(|line| *line != "//! ```")
+        .flat_map(|line| [line.trim_start_matches("//!").trim_start(), "\n"])
+        .collect()
+}
+
+#[test]
+fn the_profile_that_shows_every_key_loads() {
+    let profile = meterpoll::profile::load::load("format.rs", &documented());
+    let profile = profile.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(profile.points.len(), 3);
+}
+
+#[test]
+fn every_key_of_a_profile_is_shown() {
+    let documented = documented();
+    let fields = FORMAT.lines().filter_map(|line| {
+        let field = line.trim_start().strip_prefix("pub(super) ")?;
+        field.split_once(':').map(|(name, _)| name)
+    });
+    let mut count = 0;
+    for field in fields {
+        // `type` is a word of the language.
+        let key = if field == "kind" { "type" } else { field };
+        let shown =
+            documented.contains(&format!("{key} = ")) || documented.contains(&format!("[{key}]"));
+        assert!(shown, "{key}");
+        count += 1;
+    }
+    assert!(count > 30, "{count}");
+}
+
 #[test]
 fn every_option_it_names_is_in_the_help() {
     let help = Program::new("read-registers --help").output();

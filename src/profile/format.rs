@@ -26,13 +26,13 @@
 //!
 //! [identification]              # how to tell that a unit is this meter
 //! point = "device_code"
-//! codes = [57, 58]
+//! codes = [57, 58]              # what it holds
 //!
 //! [labels]                      # tables of names that several points share
 //! on_off = { 0 = "off", 1 = "on" }
 //!
 //! [groups]                      # names and globs; `default` is read when nothing is named
-//! default = ["voltage_*", "energy_import"]
+//! default = ["voltage_*"]
 //!
 //! [[points]]
 //! name = "voltage_a"
@@ -43,14 +43,24 @@
 //! scale = 0.1                   # the raw number is multiplied with it; default 1
 //! unit = "V"
 //! about = "phase voltage L1-N"
-//! access = "read"               # read (default), write, read-write
-//! range = [0, 9999]             # raw numbers that may be written
-//! labels = "on_off"             # a table of [labels], or one in place
 //! no_value = { high_word = 0x7FFF, means = "overflow" }  # or raw = 65535, means = "absent"
-//! alone = true                  # must be read by a request of its own
-//! function = 4                  # the one function that reads it, where the two differ
-//! verified = false              # address or scale were not read in the maker's manual; default true
+//! verified = false              # address or scale were not read in the maker's manual
 //! page = "8"
+//!
+//! [[points]]
+//! name = "device_code"
+//! address = 0x0001
+//! type = "u16"
+//! alone = true                  # must be read by a request of its own
+//!
+//! [[points]]
+//! name = "backlight"
+//! address = 0x1000
+//! type = "u16"
+//! access = "read-write"         # read (default), write, read-write
+//! range = [0, 1]                # raw numbers that may be written
+//! labels = "on_off"             # a table of [labels], or one in place
+//! function = 3                  # the one function that reads it, where the two differ
 //! ```
 
 use std::collections::BTreeMap;
