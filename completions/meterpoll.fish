@@ -52,7 +52,7 @@ even\t'Even parity, the standard\'s default'
 odd\t'Odd parity'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
 2\t'Two stop bits'"
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms [default: the meter\'s longest answer time, else 1s]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms; a late one is waited for as long again and thrown away [default: the meter\'s longest answer time, else 1s]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r

@@ -70,11 +70,11 @@ fn a_valid_frame_of_the_unit_that_answers_something_else_is_a_mismatch() {
         ),
         (
             reply_frame(0x11, &registers(&[1, 2])),
-            "2 registers where 3 were asked for",
+            "2 registers, and 3 asked for",
         ),
         (
             reply_frame(0x11, &registers(&[1, 2, 3, 4])),
-            "4 registers where 3 were asked for",
+            "4 registers, and 3 asked for",
         ),
         (
             framed(&[0x11, 0x03, 0x00]),

@@ -389,7 +389,7 @@ fn an_answer_to_something_else_is_named_when_the_time_is_up() {
     let mut bench = meeting(answered(0x6B, 2));
     assert_eq!(
         bench.failure(0).to_string(),
-        "the unit answered something else: 2 registers where 3 were asked for"
+        "the unit answered something else: 2 registers, and 3 asked for"
     );
     assert_eq!(bench.now(), SILENCE + REQUEST + T);
 }

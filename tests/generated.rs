@@ -89,11 +89,18 @@ fn page(command: &Command, name: &'static str) -> String {
     let text = String::from_utf8(page).expect("text");
     let body = text.split(".SH EXTRA").next().unwrap_or_default();
     let body = body.split(".SH VERSION").next().unwrap_or_default();
-    // The generator ends some lines in spaces.
-    let mut page: String = body
-        .lines()
-        .flat_map(|line| [line.trim_end(), "\n"])
-        .collect();
+    let mut page = String::new();
+    let mut is_set = false;
+    for line in body.lines() {
+        // What is indented is set in columns and must not be filled.
+        if line.starts_with("  ") != is_set {
+            is_set = !is_set;
+            page.push_str(if is_set { ".nf\n" } else { ".fi\n" });
+        }
+        // The generator ends some lines in spaces.
+        page.push_str(line.trim_end());
+        page.push('\n');
+    }
     if let Some(examples) = examples {
         page.push_str(".SH EXAMPLES\n.nf\n");
         for line in examples.lines().filter(|line| line.starts_with("  ")) {

@@ -30,8 +30,8 @@ pub struct LineArguments {
     /// Stop bits [default: the meter's factory setting, else 1]
     #[arg(short, long, value_name = "BITS")]
     pub stop_bits: Option<StopBitsChoice>,
-    /// How long a meter may take to begin its answer, such as 500ms [default: the meter's longest
-    /// answer time, else 1s]
+    /// How long a meter may take to begin its answer, such as 500ms; a late one is waited for as
+    /// long again and thrown away [default: the meter's longest answer time, else 1s]
     #[arg(short, long, value_name = "TIME", value_parser = timeout)]
     pub timeout: Option<Duration>,
     /// How often a read is repeated when the line fails, at most 100 times

@@ -25,6 +25,7 @@ pub struct ReadRegisters {
 What to read; the meter's @default group when left out.
 
 With --meter: point names (current_a), globs (current_*), groups (@energy).
+
 Always: registers by protocol address, from 0:
   0x006B              one register
   107                 the same in decimal

@@ -244,7 +244,7 @@ impl<'a> Expectation<'a> {
                     },
                 ) if *function == answered => {
                     let (found, asked) = (values.count(), range.count());
-                    format!("{found} registers where {asked} were asked for")
+                    format!("{found} registers, and {asked} asked for")
                 }
                 (_, response) => format!("an answer to {}", response.function()),
             },

@@ -191,12 +191,20 @@ impl Client {
                     if self.is_clean(asked, &before) {
                         self.echoes.get_or_insert(false);
                     }
+                    let is_first = self.debts.answers(asked.unit) == 1;
                     self.debts.paid(asked.unit, self.line.now());
                     if before.stray > 0 {
                         info!("{} stray bytes before the answer skipped", before.stray);
                     }
                     let took = self.line.now().saturating_sub(sent).as_secs_f64() * 1000.0;
-                    info!("unit {}: answered in {took:.1} ms", asked.unit);
+                    if is_first {
+                        info!("unit {}: answered in {took:.1} ms", asked.unit);
+                    } else {
+                        info!(
+                            "unit {}: answered, perhaps to an earlier attempt",
+                            asked.unit
+                        );
+                    }
                     return Ok(reply);
                 }
                 Verdict::Waiting(found) => evidence = found,

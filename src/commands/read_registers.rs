@@ -41,8 +41,9 @@ pub(super) fn run(
         return print(frames(&units, &plan).as_bytes());
     }
 
-    let stop = Stop::listen().map_err(CommandError::Signals)?;
     let mut client = line.open()?;
+    // From here on a row is in hand; before, a signal ends the program where it is.
+    let stop = Stop::listen().map_err(CommandError::Signals)?;
     let round = Round {
         units: &units,
         meter: profile.as_ref().map_or("", |profile| profile.name.as_str()),
@@ -56,7 +57,7 @@ pub(super) fn run(
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
     // lost has none.
     let _ = client.finish();
-    result
+    result.map(|code| stop.requested().unwrap_or(code))
 }
 
 /// What is read: every unit once.
@@ -106,8 +107,7 @@ fn read(
     if lost > 1 {
         report::untried_units(lost - 1);
     }
-    let whole = ExitCode::of(delivered, &faults);
-    Ok(round.stop.requested().unwrap_or(whole))
+    Ok(ExitCode::of(delivered, &faults))
 }
 
 /// Reads one unit and tells what went wrong.
@@ -159,6 +159,14 @@ fn points(
     let points = select(&arguments.what, reading)?;
     if let Some(profile) = profile {
         answered(&points, profile)?;
+        let is_heard = profile.limits.interchangeable_reads
+            || points.iter().any(|point| point.function.is_some());
+        if arguments.function.is_some() && !is_heard {
+            return Err(CommandError::NoEffect {
+                option: "--function",
+                format: "registers by address, or a meter whose functions 03 and 04 are one",
+            });
+        }
     }
     if arguments.format == FormatChoice::Csv && arguments.layout != Some(Layout::Long) {
         let mut names: BTreeSet<&str> = WIDE_COLUMNS.into();

@@ -14,6 +14,10 @@ use crate::profile::selector::SelectError;
 use crate::readings::Trouble;
 use crate::transport::OpenError;
 
+/// What to make of a port that was lost.
+const LOST_HINT: &str = "the adapter was unplugged, or the other side hung up; /dev/serial/by-id \
+                         has a name that stays when it comes back";
+
 /// Prints what there is to say to a command line that nothing comes of: help on stdout, errors on
 /// stderr.
 pub(super) fn usage(message: &Usage) -> ExitCode {
@@ -185,6 +189,7 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::Find(FindError::Misnamed { .. }) => "give both the same name",
         CommandError::Tcp { .. } => "give a serial port, or sim: for the simulated line",
         CommandError::Open(error) => return open_hint(error),
+        CommandError::Lost(_) => LOST_HINT,
         _ => return None,
     };
     Some(text.to_owned())
@@ -255,15 +260,14 @@ fn failure_hint(failure: &Failure) -> Option<&'static str> {
         Failure::NeverQuiet { .. } => {
             "another master may be talking on this line, or its bias resistors are missing"
         }
-        Failure::Exception(ExceptionCode::ILLEGAL_FUNCTION) => "try the other --function, 3 or 4",
+        Failure::Exception(ExceptionCode::ILLEGAL_FUNCTION) => {
+            "registers by address can be read with the other function, --function 3 or 4"
+        }
         Failure::Exception(ExceptionCode::ILLEGAL_DATA_ADDRESS) => {
             "the meter has no such registers, or not as many at once; addresses are as on the \
              wire, from 0 (for 40001 and the like see --numbering modicon)"
         }
-        Failure::Port(_) => {
-            "the adapter was unplugged, or the other side hung up; /dev/serial/by-id has a name \
-             that stays when it comes back"
-        }
+        Failure::Port(_) => LOST_HINT,
         Failure::Exception(_) => return None,
     })
 }

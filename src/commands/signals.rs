@@ -11,7 +11,9 @@ use super::ExitCode;
 
 /// Raised when the program is to stop.
 pub(super) struct Stop {
-    interrupted: Arc<AtomicBool>,
+    /// Any of the two has come.
+    raised: Arc<AtomicBool>,
+    /// It was SIGTERM.
     terminated: Arc<AtomicBool>,
 }
 
@@ -19,25 +21,26 @@ impl Stop {
     /// Listens from now on.
     pub(super) fn listen() -> io::Result<Self> {
         let stop = Self {
-            interrupted: Arc::default(),
+            raised: Arc::default(),
             terminated: Arc::default(),
         };
-        for (signal, raised) in [(SIGINT, &stop.interrupted), (SIGTERM, &stop.terminated)] {
+        for signal in [SIGINT, SIGTERM] {
             // In this order: the first signal finds the flag down and raises it.
-            flag::register_conditional_default(signal, Arc::clone(raised))?;
-            flag::register(signal, Arc::clone(raised))?;
+            flag::register_conditional_default(signal, Arc::clone(&stop.raised))?;
+            flag::register(signal, Arc::clone(&stop.raised))?;
         }
+        flag::register(SIGTERM, Arc::clone(&stop.terminated))?;
         Ok(stop)
     }
 
     /// What to end with, once a signal has come.
     pub(super) fn requested(&self) -> Option<ExitCode> {
-        if self.terminated.load(Ordering::Relaxed) {
-            Some(ExitCode::Terminated)
-        } else if self.interrupted.load(Ordering::Relaxed) {
-            Some(ExitCode::Interrupted)
-        } else {
+        if !self.raised.load(Ordering::Relaxed) {
             None
+        } else if self.terminated.load(Ordering::Relaxed) {
+            Some(ExitCode::Terminated)
+        } else {
+            Some(ExitCode::Interrupted)
         }
     }
 }

@@ -54,7 +54,7 @@ pub fn find(meter: &str) -> Result<Profile, FindError> {
         return file(path);
     }
     if let Some(path) = own_folder().map(|folder| folder.join(format!("{meter}.toml")))
-        && path.is_file()
+        && is_there(&path)
     {
         return own(&path);
     }
@@ -116,6 +116,18 @@ pub fn file(path: &Path) -> Result<Profile, FindError> {
     match std::fs::read_to_string(path) {
         Ok(text) => Ok(load::load(&name, &text)?),
         Err(source) => Err(FindError::Unreadable { file: name, source }),
+    }
+}
+
+/// Whether there is anything of that name, a broken link included: an own profile that cannot be
+/// read is an error, not a reason to take another meter.
+fn is_there(path: &Path) -> bool {
+    match path.symlink_metadata() {
+        Ok(_) => true,
+        Err(error) => !matches!(
+            error.kind(),
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory
+        ),
     }
 }
 
