@@ -1,7 +1,9 @@
 //! What the program itself costs, without the silences of a line: a read of ten registers over a
-//! pty, and unpacking a built-in meter. Takes the path of a pty whose other end answers at once,
+//! pty beside the bare write and read of the same bytes, and unpacking a built-in meter. Takes the path of a pty whose other end answers at once,
 //! as `tests/bench/run` provides.
 
+use std::fs::OpenOptions;
+use std::io::{Read, Write};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -25,6 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("transactions: skipped, no pty given");
         return Ok(());
     };
+    println!("bare write and read   {}", summary(bare(&path)?));
     let settings = LineSettings {
         baud: 115_200,
         ..LineSettings::default()
@@ -44,6 +47,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     println!("read 10 registers     {}, {failed} failed", summary(times));
     Ok(())
+}
+
+/// The floor on this machine: the same bytes written and read with nothing around.
+fn bare(path: &str) -> Result<Vec<Duration>, Box<dyn std::error::Error>> {
+    let request = [0x01, 0x03, 0x00, 0x00, 0x00, 0x0A, 0xC5, 0xCD];
+    let mut answer = [0; 25];
+    let mut port = OpenOptions::new().read(true).write(true).open(path)?;
+    let mut result = Ok(());
+    let times = measure(TRANSACTIONS, || {
+        let exchange = port
+            .write_all(&request)
+            .and_then(|()| port.read_exact(&mut answer));
+        if let Err(error) = exchange {
+            result = Err(error);
+        }
+    });
+    result?;
+    Ok(times)
 }
 
 /// Times of `count` runs after some to warm up.
