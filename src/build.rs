@@ -55,8 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         )?;
         writeln!(
             list,
-            "Builtin {{ name: {name:?}, title: {:?}, packed: include_bytes!({packed:?}) }},",
-            profile.title
+            "Builtin {{ name: {name:?}, packed: include_bytes!({packed:?}) }},"
         )?;
     }
     list.push_str("];\n");

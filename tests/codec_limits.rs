@@ -4,29 +4,16 @@
 //! "AP" is the Modbus Application Protocol Specification V1.1b3, "SL" Modbus over Serial Line
 //! V1.02.
 
-use meterpoll::codec::rtu::{check, decode_reply, decode_request, encode_reply, encode_request};
+#[path = "support/refused.rs"]
+mod refused;
+
+use meterpoll::codec::rtu::{decode_reply, decode_request, encode_reply, encode_request};
 use meterpoll::codec::{
     AddressError, DecodeError, Destination, FunctionCode, ReadFunction, ReadValues, RegisterBlock,
     RegisterRange, Reply, Request, Response, Unit, UnitRange, Write, WrittenRange,
 };
 
-/// A frame with a right CRC: `body` is the unit and the data unit.
-fn sealed(body: &[u8]) -> Vec<u8> {
-    [body, &check(body)].concat()
-}
-
-/// A data unit that ends in `count` bytes of 0.
-fn padded(head: &[u8], count: usize) -> Vec<u8> {
-    [head, &vec![0; count]].concat()
-}
-
-fn request(unit: &[u8]) -> DecodeError {
-    Request::decode(unit).unwrap_err()
-}
-
-fn reply(unit: &[u8]) -> DecodeError {
-    Reply::decode(unit).unwrap_err()
-}
+use self::refused::{padded, reply, request, sealed};
 
 const fn count(what: &'static str, found: usize, most: u16) -> AddressError {
     AddressError::Count { what, found, most }

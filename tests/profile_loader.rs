@@ -454,3 +454,11 @@ fn an_identification_that_cannot_work_is_refused() {
         "m.toml:4: identification.point: \"a\" is not a point of one register that can be read",
     );
 }
+
+#[test]
+fn the_longest_answer_takes_some_time() {
+    refused(
+        &with("[limits]\nlongest_answer = \"0s\""),
+        "m.toml:5: limits.longest_answer: \"0s\" is not a time above 0s",
+    );
+}

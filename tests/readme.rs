@@ -4,6 +4,7 @@ mod support {
     pub(crate) mod program;
 }
 
+use meterpoll::commands::ExitCode;
 use support::program::Program;
 
 const README: &str = include_str!("../README.md");
@@ -131,4 +132,32 @@ fn every_option_it_names_is_in_the_help() {
     for option in named {
         assert!(help.contains(option), "{option} is not in the help");
     }
+}
+
+#[test]
+fn every_exit_code_is_in_its_table() {
+    let first_cells: Vec<&str> = README
+        .lines()
+        .filter_map(|line| line.strip_prefix("| ")?.split(" |").next())
+        .flat_map(|cell| cell.split(", "))
+        .collect();
+    for (code, _) in meterpoll::cli::EXIT_CODES {
+        assert!(first_cells.contains(&code.to_string().as_str()), "{code}");
+    }
+    // What the program ends with, typed from its contract.
+    let ends = [
+        ExitCode::Done,
+        ExitCode::SomeMissing,
+        ExitCode::Usage,
+        ExitCode::Port,
+        ExitCode::NoAnswer,
+        ExitCode::Refused,
+        ExitCode::WriteUnknown,
+        ExitCode::Output,
+        ExitCode::Interrupted,
+        ExitCode::Terminated,
+    ];
+    let told = meterpoll::cli::EXIT_CODES.map(|(code, _)| code);
+    assert_eq!(ends.map(|end| end as u8), told);
+    assert_eq!(told, [0, 1, 2, 3, 4, 5, 6, 7, 130, 143]);
 }

@@ -221,3 +221,15 @@ fn a_point_keeps_the_type_its_meter_gives_it() {
         );
     }
 }
+
+#[test]
+fn a_group_without_a_point_that_can_be_read_is_nothing_to_read() {
+    let text = "name = \"m\"\ntitle = \"M\"\nmanual = \"none\"\ngroups.default = [\"reset\"]\n\n\
+                [[points]]\nname = \"reset\"\naddress = 0\ntype = \"u16\"\naccess = \"write\"\n";
+    let profile = meterpoll::profile::load::load("m.toml", text).expect("it loads");
+    let error = select(&[], meter(&profile)).expect_err("nothing");
+    assert_eq!(
+        error.to_string(),
+        "nothing to read: @default has no point that can be read"
+    );
+}

@@ -68,9 +68,6 @@ pub enum CommandError {
     /// The ports cannot be listed.
     #[error(transparent)]
     Ports(#[from] ListError),
-    /// The system does not let the program listen to signals.
-    #[error("signals cannot be listened to")]
-    Signals(#[source] io::Error),
     /// Stdout does not take what is written.
     #[error("the output cannot be written")]
     Output(#[source] io::Error),

@@ -14,8 +14,9 @@ pub(super) fn start(verbosity: Verbosity) {
         Verbosity { verbose: 1, .. } => LevelFilter::Info,
         Verbosity { .. } => LevelFilter::Trace,
     };
-    env_logger::Builder::new()
+    // Where somebody else logs already, as a program around this library may, that stays.
+    let _ = env_logger::Builder::new()
         .filter_module("meterpoll", level)
         .format(|out, record| writeln!(out, "{}", record.args()))
-        .init();
+        .try_init();
 }

@@ -43,7 +43,7 @@ pub(super) fn run(
 
     let mut client = line.open()?;
     // From here on a row is in hand; before, a signal ends the program where it is.
-    let stop = Stop::listen().map_err(CommandError::Signals)?;
+    let stop = Stop::listen();
     let round = Round {
         units: &units,
         meter: profile.as_ref().map_or("", |profile| profile.name.as_str()),

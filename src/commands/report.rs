@@ -166,7 +166,7 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::Find(_)
         | CommandError::Tcp { .. } => ExitCode::Usage,
         CommandError::Open(_) | CommandError::Lost(_) | CommandError::Ports(_) => ExitCode::Port,
-        CommandError::Output(_) | CommandError::Signals(_) => ExitCode::Output,
+        CommandError::Output(_) => ExitCode::Output,
     }
 }
 
@@ -180,7 +180,10 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
-        CommandError::Function { .. } => "leave --function out",
+        CommandError::Function { .. } => {
+            "the other function reads its registers: see --function, or 3xxxx and 4xxxx with \
+             --numbering modicon"
+        }
         CommandError::Find(FindError::Unknown { .. }) => {
             "`meterpoll meters list` shows them; a profile file is named by its path"
         }

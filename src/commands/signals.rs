@@ -1,6 +1,5 @@
 //! SIGINT and SIGTERM: the row in hand is finished first. The second one ends the program at once.
 
-use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -18,19 +17,19 @@ pub(super) struct Stop {
 }
 
 impl Stop {
-    /// Listens from now on.
-    pub(super) fn listen() -> io::Result<Self> {
+    /// Listens from now on. A signal that cannot be listened to ends the program as ever.
+    pub(super) fn listen() -> Self {
         let stop = Self {
             raised: Arc::default(),
             terminated: Arc::default(),
         };
         for signal in [SIGINT, SIGTERM] {
             // In this order: the first signal finds the flag down and raises it.
-            flag::register_conditional_default(signal, Arc::clone(&stop.raised))?;
-            flag::register(signal, Arc::clone(&stop.raised))?;
+            let _ = flag::register_conditional_default(signal, Arc::clone(&stop.raised))
+                .and_then(|_| flag::register(signal, Arc::clone(&stop.raised)));
         }
-        flag::register(SIGTERM, Arc::clone(&stop.terminated))?;
-        Ok(stop)
+        let _ = flag::register(SIGTERM, Arc::clone(&stop.terminated));
+        stop
     }
 
     /// What to end with, once a signal has come.

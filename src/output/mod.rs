@@ -10,7 +10,7 @@ pub mod table;
 use std::io;
 
 use crate::profile::Point;
-use crate::readings::Row;
+use crate::readings::{Fault, Row};
 
 pub use csv::{LongCsv, WideCsv};
 pub use json::{Json, JsonLines};
@@ -37,7 +37,7 @@ pub fn time(row: &Row) -> String {
 }
 
 /// The status of a row or a reading.
-pub fn status(fault: Option<crate::readings::Fault>) -> String {
+pub fn status(fault: Option<Fault>) -> String {
     fault.map_or_else(|| "ok".to_owned(), |fault| fault.to_string())
 }
 

@@ -7,7 +7,7 @@ use super::{Sink, escape, status};
 use crate::profile::{Point, Value};
 use crate::readings::{Fault, Row};
 
-/// Behind the name of a point whose address was not read in the maker's manual.
+/// Behind the name of a point whose address or scale was not read in the maker's manual.
 const UNVERIFIED: &str = " *";
 
 /// What that mark means.

@@ -11,8 +11,6 @@ use super::model::Profile;
 pub struct Builtin {
     /// Its name, as typed after `--meter`.
     pub name: &'static str,
-    /// Maker and model.
-    pub title: &'static str,
     packed: &'static [u8],
 }
 

@@ -212,13 +212,23 @@ fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileErr
             "limits.typical_answer",
             default.typical_answer,
         )?,
-        longest_answer: source.duration(
-            table.longest_answer.as_ref(),
-            "limits.longest_answer",
-            default.longest_answer,
-        )?,
+        longest_answer: longest_answer(source, table, default.longest_answer)?,
         pause: source.duration(table.pause.as_ref(), "limits.pause", default.pause)?,
     })
+}
+
+/// The time-out where none is asked for, so it is above zero.
+fn longest_answer(
+    source: &Source<'_>,
+    table: &LimitsTable,
+    default: Duration,
+) -> Result<Duration, ProfileError> {
+    let key = "limits.longest_answer";
+    let time = source.duration(table.longest_answer.as_ref(), key, default)?;
+    match &table.longest_answer {
+        Some(text) if time.is_zero() => Err(source.value(text, key, "a time above 0s")),
+        _ => Ok(time),
+    }
 }
 
 fn functions(

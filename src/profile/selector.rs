@@ -165,6 +165,10 @@ pub fn select(selectors: &[String], reading: Reading<'_>) -> Result<Vec<Point>, 
             }
         }
     }
+    if points.is_empty() {
+        let reason = format!("{} has no point that can be read", selectors.join(" "));
+        return Err(SelectError::Nothing { reason });
+    }
     Ok(points)
 }
 
