@@ -34,7 +34,7 @@ fn refused(text: &str, message: &str) {
     }
 }
 
-const POINT_KEYS: &str = "name, address, type, order, scale, unit, about, access, range, labels, \
+const POINT_KEYS: &str = "name, address, repeat, type, order, scale, unit, about, access, range, labels, \
                           no_value, alone, function, verified, page";
 
 #[test]

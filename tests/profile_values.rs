@@ -358,3 +358,18 @@ fn only_numbers_say_that_they_are() {
     assert!(!is_number("type = \"time\"", &[0, 0]));
     assert!(!is_number("type = \"u16\"\nlabels = { 1 = \"on\" }", &[1]));
 }
+
+#[test]
+fn a_code_with_a_name_shows_as_it_and_any_other_as_the_scaled_number() {
+    let keys = "type = \"u16\"\nscale = 0.1\nlabels = { 1201 = \"off\" }";
+    assert_eq!(shown(keys, &[1201]), "off");
+    assert_eq!(shown(keys, &[1200]), "120.0");
+}
+
+#[test]
+fn names_of_signed_codes_go_by_the_register() {
+    let keys = "type = \"i16\"\nlabels = { 0 = \"L1-L2-L3\", 0xFFFF = \"L1-L3-L2\" }";
+    assert_eq!(shown(keys, &[0]), "L1-L2-L3");
+    assert_eq!(shown(keys, &[0xFFFF]), "L1-L3-L2");
+    assert_eq!(shown(keys, &[0xFFFE]), "-2");
+}

@@ -59,8 +59,15 @@
 //! type = "u16"
 //! access = "read-write"         # read (default), write, read-write
 //! range = [0, 1]                # raw numbers that may be written
-//! labels = "on_off"             # a table of [labels], or one in place
+//! labels = "on_off"             # a table of [labels], or one in place; a code without a name
+//!                               # shows as its number
 //! function = 3                  # the one function that reads it, where the two differ
+//!
+//! [[points]]
+//! name = "user_register"
+//! address = 0x1100
+//! type = "hex"
+//! repeat = 8                    # user_register_1 to user_register_8, one behind the other
 //! ```
 
 use std::collections::BTreeMap;
@@ -136,6 +143,7 @@ pub type LabelTable = BTreeMap<Spanned<String>, String>;
 pub struct PointTable {
     pub(super) name: Spanned<String>,
     pub(super) address: Spanned<u16>,
+    pub(super) repeat: Option<Spanned<u16>>,
     #[serde(rename = "type")]
     pub(super) kind: Spanned<String>,
     pub(super) order: Option<Spanned<String>>,

@@ -286,17 +286,17 @@ fn points(
     labels: &SharedLabels,
     limits: &Limits,
 ) -> Result<Vec<Point>, ProfileError> {
-    let mut lines: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut lines: BTreeMap<String, usize> = BTreeMap::new();
     let mut points: Vec<(Point, Range<usize>)> = Vec::with_capacity(rows.len());
     for row in rows {
-        let name = row.name.as_ref().as_str();
-        let point = point::point(source, row, labels, limits)?;
         let line = source.line_of(row.name.span().start);
-        if let Some(first) = lines.insert(name, line) {
-            let problem = Problem::DuplicateName { first };
-            return Err(source.error(row.name.span(), format!("{name}.name"), problem));
+        for point in point::row(source, row, labels, limits)? {
+            if let Some(first) = lines.insert(point.name.clone(), line) {
+                let problem = Problem::DuplicateName { first };
+                return Err(source.error(row.name.span(), format!("{}.name", point.name), problem));
+            }
+            points.push((point, row.address.span()));
         }
-        points.push((point, row.address.span()));
     }
     points.sort_by_key(|(point, _)| (point.range, point.alone));
     overlaps(source, &points, limits)?;

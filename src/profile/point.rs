@@ -65,7 +65,7 @@ impl Access {
     }
 }
 
-/// Names for numbers or bits.
+/// Names for numbers or bits, by the register that holds them.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Labels {
     /// None: the number itself is shown.
@@ -155,7 +155,7 @@ impl Point {
     }
 
     fn integer(&self, number: i128) -> Result<Value, Missing> {
-        if let (Labels::Codes(codes), Ok(code)) = (&self.labels, u16::try_from(number))
+        if let (Labels::Codes(codes), Some(code)) = (&self.labels, register(number))
             && let Some(label) = codes.get(&code)
         {
             return Ok(Value::Text(label.clone()));
@@ -202,6 +202,12 @@ impl Point {
             _ => format!("0x{word:04X}"),
         }
     }
+}
+
+/// The register that holds a number of one register, negative ones included: labels go by that.
+fn register(number: i128) -> Option<u16> {
+    let signed = || i16::try_from(number).ok().map(i16::cast_unsigned);
+    u16::try_from(number).ok().or_else(signed)
 }
 
 /// `mantissa` with this many decimals times the scale, exactly and with all their decimals; `None`

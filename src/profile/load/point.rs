@@ -14,8 +14,37 @@ use crate::profile::model::Limits;
 use crate::profile::point::{Access, Labels, Marker, NoValue, Point, times};
 use crate::profile::value::Missing;
 
-/// Checks one point against itself and the meter's limits.
-pub(super) fn point(
+/// The points of one row: one, or as many as it repeats, each checked against itself and the meter's
+/// limits.
+pub(super) fn row(
+    source: &Source<'_>,
+    row: &PointTable,
+    shared: &SharedLabels,
+    limits: &Limits,
+) -> Result<Vec<Point>, ProfileError> {
+    let first = point(source, row, shared, limits)?;
+    let Some(repeat) = &row.repeat else {
+        return Ok(vec![first]);
+    };
+    let key = |key: &str| format!("{}.{key}", first.name);
+    let (start, width) = (first.range.start().get(), first.range.count());
+    let most = (u16::MAX - start) / width;
+    if !(2..=most).contains(repeat.as_ref()) {
+        let expected = format!("2 to {most}, as many as lie below 0xFFFF");
+        return Err(source.value(repeat, &key("repeat"), expected));
+    }
+    let places = (0..*repeat.as_ref()).map(|place| {
+        let start = start + place * width;
+        Ok(Point {
+            name: format!("{}_{}", first.name, place + 1),
+            range: range(source, row, start, first.kind, limits, &key)?,
+            ..first.clone()
+        })
+    });
+    places.collect()
+}
+
+fn point(
     source: &Source<'_>,
     row: &PointTable,
     shared: &SharedLabels,
@@ -29,7 +58,7 @@ pub(super) fn point(
         Some(order) => parsed(source, order, key("order"))?,
         None => crate::codec::value::ByteOrder::default(),
     };
-    let range = range(source, row, kind, limits, &key)?;
+    let range = range(source, row, *row.address.as_ref(), kind, limits, &key)?;
     let scale = match &row.scale {
         None => Decimal::ONE,
         Some(scale) => scaled(source, scale, kind, &key("scale"))?,
@@ -38,11 +67,6 @@ pub(super) fn point(
         None => Labels::None,
         Some(labels) => named(source, labels, kind, shared, &key("labels"))?,
     };
-    if !matches!(labels, Labels::None) && scale != Decimal::ONE {
-        let at = row.scale.as_ref().map_or(row.name.span(), Spanned::span);
-        let problem = Problem::Conflict("a point with labels has no scale");
-        return Err(source.error(at, key("scale"), problem));
-    }
     Ok(Point {
         about: row.about.clone(),
         range,
@@ -87,11 +111,12 @@ fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
 fn range(
     source: &Source<'_>,
     row: &PointTable,
+    start: u16,
     kind: RegisterType,
     limits: &Limits,
     key: &impl Fn(&str) -> String,
 ) -> Result<RegisterRange, ProfileError> {
-    let (start, count) = (*row.address.as_ref(), kind.registers());
+    let count = kind.registers();
     let past_end = |end: String| {
         let problem = Problem::PastEnd { start, count, end };
         source.error(row.address.span(), key("address"), problem)
@@ -257,9 +282,9 @@ fn named(
     };
     match kind {
         RegisterType::Bits => Ok(Labels::Bits(names)),
-        RegisterType::U16 | RegisterType::Hex => Ok(Labels::Codes(names)),
+        RegisterType::U16 | RegisterType::I16 | RegisterType::Hex => Ok(Labels::Codes(names)),
         _ => {
-            let problem = Problem::Conflict("only u16, hex and bits have labels");
+            let problem = Problem::Conflict("only u16, i16, hex and bits have labels");
             Err(source.error(labels.span(), key, problem))
         }
     }
