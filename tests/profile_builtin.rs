@@ -25,7 +25,7 @@ fn row(point: &Point) -> String {
         point.range.start(),
         point.range.count(),
         point.kind,
-        point.scale,
+        point.constant_scale().expect("a number"),
         point.unit.as_deref().unwrap_or_default(),
         if point.verified { "yes" } else { "no" },
     )
