@@ -12,7 +12,7 @@ use crate::client::{Client, Patience};
 use crate::codec::{FunctionCode, ReadFunction, Unit, rtu};
 use crate::output::csv::{CsvStyle, WIDE_COLUMNS};
 use crate::output::{Heading, Json, JsonLines, LongCsv, Sink, Table, WideCsv};
-use crate::profile::plan::Cost;
+use crate::profile::plan::{Cost, Rules};
 use crate::profile::selector::{Numbering, Reading, select};
 use crate::profile::{Limits, Plan, Point, Profile, find};
 use crate::readings::{Fault, Row, take};
@@ -31,12 +31,12 @@ pub(super) fn run(
     let units = units(arguments, &limits)?;
     let points = points(arguments, profile.as_ref())?;
     let function = function(arguments, &limits);
-    let plan = Plan::new(
-        &points,
-        function,
-        &limits,
-        Cost::new(line.settings, &limits),
-    );
+    let rules = profile
+        .as_ref()
+        .map_or_else(|| Rules::new(&limits), Rules::of);
+    let patience = line.patience(&limits);
+    let cost = Cost::new(line.settings, patience.pause, limits.typical_answer);
+    let plan = Plan::new(&points, function, &rules, cost);
     if arguments.dry_run {
         return print(frames(&units, &plan).as_bytes());
     }
@@ -49,7 +49,7 @@ pub(super) fn run(
         meter: profile.as_ref().map_or("", |profile| profile.name.as_str()),
         points: &points,
         plan: &plan,
-        patience: line.patience(&limits),
+        patience,
         line: &line.name(),
         stop: &stop,
     };
