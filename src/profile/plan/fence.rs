@@ -1,6 +1,7 @@
 //! Where reads of one function have to end.
 
 use super::areas::{Areas, Stretch, stretch};
+use super::rules::Holes;
 use crate::codec::RegisterRange;
 
 /// What stands in the way of reads of several points, made ready for very many questions.
@@ -12,6 +13,10 @@ pub(super) struct Fence<'a> {
     pub(super) table_registers: Option<u16>,
     /// What no read may touch.
     pub(super) barriers: Areas,
+    /// What a read may cover besides the registers of its points.
+    holes: Holes,
+    /// The registers of ordinary points.
+    known: &'a Areas,
     /// What no read may begin or end inside of.
     pub(super) whole: &'a Areas,
     /// What no read may cover: where it begins, and the least end of all that begin there or later.
@@ -21,6 +26,7 @@ pub(super) struct Fence<'a> {
 impl<'a> Fence<'a> {
     pub(super) fn new(
         (most, table_registers): (u16, Option<u16>),
+        (holes, known): (Holes, &'a Areas),
         barriers: Areas,
         whole: &'a Areas,
         mut refused: Vec<Stretch>,
@@ -34,6 +40,8 @@ impl<'a> Fence<'a> {
         Self {
             most,
             table_registers,
+            holes,
+            known,
             barriers,
             whole,
             refused,
@@ -55,6 +63,15 @@ impl<'a> Fence<'a> {
             furthest = furthest.min(end - 1);
         }
         furthest
+    }
+
+    /// Whether a read may go on across registers that none of its points names.
+    pub(super) fn allows_hole(&self, hole: Stretch) -> bool {
+        match self.holes {
+            Holes::Any => true,
+            Holes::Known => self.known.hold(hole),
+            Holes::None => false,
+        }
     }
 
     /// Whether a read of several points may be one of just these registers.
