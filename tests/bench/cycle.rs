@@ -56,7 +56,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             if what == "@default" {
                 let took = cycle(&mut client, limits, &reads)?;
                 let ratio = took.as_secs_f64() / physical.as_secs_f64();
-                print!("  measured {:>9.1} ms  ratio {ratio:.4}", milliseconds(took));
+                print!(
+                    "  measured {:>9.1} ms  ratio {ratio:.4}",
+                    milliseconds(took)
+                );
                 if name == "the plan" {
                     let verdict = if ratio <= TARGET { "met" } else { "MISSED" };
                     print!("  target {TARGET}: {verdict}");
