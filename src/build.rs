@@ -18,9 +18,12 @@ mod codec;
 mod profile {
     pub mod error;
     pub mod format;
+    pub mod identity;
     pub mod load;
     pub mod model;
     pub mod point;
+    pub mod scaling;
+    pub mod setup;
     pub mod value;
 }
 

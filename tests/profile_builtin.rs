@@ -137,7 +137,7 @@ fn row(point: &Point) -> Row {
         address: point.range.start().get(),
         words: point.range.count(),
         kind: point.kind.to_string(),
-        scale: point.scale.to_string(),
+        scale: point.constant_scale().expect("a number").to_string(),
         unit: point.unit.clone().unwrap_or_default(),
         access: access.to_owned(),
         range: range.unwrap_or_default(),

@@ -106,7 +106,7 @@ fn a_scale_has_the_decimals_it_is_written_with() {
         ("0.000277777777777778", "0.000277777777777778"),
     ] {
         let point = good("u16", &format!("scale = {scale}"));
-        assert_eq!(point.scale.to_string(), kept);
+        assert_eq!(point.constant_scale().expect("a number").to_string(), kept);
     }
 }
 

@@ -6,7 +6,7 @@ use jiff::Timestamp;
 use meterpoll::codec::rtu::{Hex, check, decode_reply, encode_request};
 use meterpoll::codec::value::encode_integer;
 use meterpoll::codec::{ReadFunction, RegisterRange, Reply, Request, Response, Unit, UnitRange};
-use meterpoll::profile::{Point, Value};
+use meterpoll::profile::{Point, Scales, Value};
 use meterpoll::sim::{Content, Meter, Model, Pqm};
 
 fn meter() -> &'static Meter {
@@ -58,7 +58,7 @@ fn read(function: ReadFunction, range: RegisterRange) -> Vec<u16> {
 
 fn value(point: &Point) -> Value {
     let registers = read(ReadFunction::HoldingRegisters, point.range);
-    point.interpret(&registers).unwrap()
+    point.interpret(&registers, Scales::none()).unwrap()
 }
 
 #[test]
@@ -76,7 +76,11 @@ fn every_point_of_the_profile_reads_as_what_the_model_measures() {
             None => None,
         };
         assert_eq!(Some(&registers), expected.as_ref(), "{}", point.name);
-        assert!(point.interpret(&registers).is_ok(), "{}", point.name);
+        assert!(
+            point.interpret(&registers, Scales::none()).is_ok(),
+            "{}",
+            point.name
+        );
     }
 }
 

@@ -1,6 +1,8 @@
 //! The strict loader: TOML text to a checked [`Profile`], or one error with file, line and key.
 
+mod identity;
 mod point;
+mod scaling;
 mod syntax;
 
 use std::collections::BTreeMap;
@@ -31,6 +33,9 @@ pub fn load(file: &str, text: &str) -> Result<Profile, ProfileError> {
     let limits = limits(&source, &table.limits)?;
     let labels = shared_labels(&source, &table.labels)?;
     let points = points(&source, &table.points, &labels, &limits)?;
+    let factors = scaling::factors(&source, &table.factors, &points)?;
+    scaling::references(&source, &table.points, &points, &factors)?;
+    let identities = identity::identities(&source, &table.identities, &points)?;
     let groups = groups(&source, &table.groups, &points)?;
     let identification = table
         .identification
@@ -44,7 +49,9 @@ pub fn load(file: &str, text: &str) -> Result<Profile, ProfileError> {
         limits,
         identification,
         groups,
+        factors,
         points,
+        identities,
     })
 }
 
@@ -124,6 +131,17 @@ impl Source<'_> {
                 self.value(text, key, expected)
             })
     }
+}
+
+/// A name that nothing has.
+fn unknown(
+    source: &Source<'_>,
+    name: &Spanned<String>,
+    what: &'static str,
+    key: &str,
+) -> ProfileError {
+    let found = name.as_ref().clone();
+    source.error(name.span(), key, Problem::Unknown { what, found })
 }
 
 fn line(source: &Source<'_>, table: &LineTable) -> Result<LineSettings, ProfileError> {
@@ -361,11 +379,7 @@ fn groups(
                 }
             }
             if !found {
-                let problem = Problem::Unknown {
-                    what: "point",
-                    found: pattern.as_ref().clone(),
-                };
-                return Err(source.error(pattern.span(), key, problem));
+                return Err(unknown(source, pattern, "point", &key));
             }
         }
         groups.push(Group {
@@ -383,11 +397,7 @@ fn identification(
 ) -> Result<Identification, ProfileError> {
     let (name, key) = (table.point.as_ref(), "identification.point");
     let Some(point) = points.iter().find(|point| point.name == *name) else {
-        let problem = Problem::Unknown {
-            what: "point",
-            found: name.clone(),
-        };
-        return Err(source.error(table.point.span(), key, problem));
+        return Err(unknown(source, &table.point, "point", key));
     };
     if point.kind.registers() != 1 || !point.access.readable() {
         return Err(source.value(

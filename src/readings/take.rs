@@ -6,7 +6,7 @@ use super::{Fault, Row};
 use crate::client::{Client, Failure, Patience};
 use crate::codec::{Response, Unit};
 use crate::profile::plan::PlannedRead;
-use crate::profile::{Missing, Plan, Point, Value};
+use crate::profile::{Missing, Plan, Point, Scales, Value};
 
 /// A unit that leaves this many reads in a row unanswered is not asked further.
 const MOST_SILENT_READS: usize = 2;
@@ -128,7 +128,8 @@ fn fill(
 
 /// The value of one point among the registers of a read that covers it.
 fn value(point: &Point, read: &PlannedRead, registers: &[u16]) -> Result<Value, Missing> {
-    point.interpret(own(point, read, registers).ok_or(Missing::Mismatch)?)
+    let registers = own(point, read, registers).ok_or(Missing::Mismatch)?;
+    point.interpret(registers, Scales::none())
 }
 
 /// The registers of one point among those of a read that covers it.

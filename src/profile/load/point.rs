@@ -2,16 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use rust_decimal::Decimal;
 use toml::Spanned;
 
-use super::{SharedLabels, Source};
+use super::{SharedLabels, Source, scaling};
 use crate::codec::value::RegisterType;
 use crate::codec::{FunctionCode, ReadFunction, RegisterRange};
 use crate::profile::error::{Problem, ProfileError};
-use crate::profile::format::{LabelTable, LabelsKey, NoValueTable, Number, PointTable};
+use crate::profile::format::{LabelTable, LabelsKey, NoValueTable, PointTable};
 use crate::profile::model::Limits;
-use crate::profile::point::{Access, Labels, Marker, NoValue, Point, times};
+use crate::profile::point::{Access, Labels, Marker, NoValue, OnlyWith, Point};
 use crate::profile::value::Missing;
 
 /// The points of one row: one, or as many as it repeats, each checked against itself and the meter's
@@ -59,10 +58,7 @@ fn point(
         None => crate::codec::value::ByteOrder::default(),
     };
     let range = range(source, row, *row.address.as_ref(), kind, limits, &key)?;
-    let scale = match &row.scale {
-        None => Decimal::ONE,
-        Some(scale) => scaled(source, scale, kind, &key("scale"))?,
-    };
+    let scaling = scaling::scaling(source, row, kind, &key)?;
     let labels = match &row.labels {
         None => Labels::None,
         Some(labels) => named(source, labels, kind, shared, &key("labels"))?,
@@ -72,7 +68,7 @@ fn point(
         range,
         kind,
         order,
-        scale,
+        scaling,
         unit: row.unit.clone(),
         access: access(source, row.access.as_ref(), &key("access"))?,
         limits: row
@@ -86,6 +82,10 @@ fn point(
             .as_ref()
             .map(|marker| no_value(source, marker, kind, &key("no_value")))
             .transpose()?,
+        only_with: row.only_with.as_ref().map(|with| OnlyWith {
+            point: with.point.as_ref().clone(),
+            codes: with.codes.as_ref().clone(),
+        }),
         alone: row.alone,
         function: row
             .function
@@ -134,33 +134,6 @@ fn range(
         return Err(past_end(format!("the end of its table of {size}")));
     }
     RegisterRange::new(start, count).map_err(|_| past_end("0xFFFF, the last address".to_owned()))
-}
-
-fn scaled(
-    source: &Source<'_>,
-    scale: &Spanned<Number>,
-    kind: RegisterType,
-    key: &str,
-) -> Result<Decimal, ProfileError> {
-    if !kind.is_number() {
-        let problem = Problem::Conflict("only a number has a scale");
-        return Err(source.error(scale.span(), key, problem));
-    }
-    let exact = match scale.as_ref() {
-        Number::Integer(number) => Some(Decimal::from(*number)),
-        // The shortest form that reads back the same is what was written.
-        Number::Float(number) => Decimal::from_str_exact(&number.to_string()).ok(),
-    };
-    let Some(exact) = exact.filter(|scale| !scale.is_zero()) else {
-        return Err(source.value(scale, key, "a number other than 0, of at most 28 digits"));
-    };
-    if let Some((least, most)) = kind.bounds()
-        && (times(least, 0, exact).is_none() || times(most, 0, exact).is_none())
-    {
-        let expected = format!("a number that every {kind} can be multiplied with exactly");
-        return Err(source.value(scale, key, expected));
-    }
-    Ok(exact)
 }
 
 fn access(
@@ -300,17 +273,10 @@ pub(super) fn label_names(
     let mut rows: Vec<_> = table.iter().collect();
     rows.sort_by_key(|(code, _)| code.span().start);
     for (code, name) in rows {
-        let text = code.as_ref();
-        let number = match text.strip_prefix("0x") {
-            Some(hex) => u16::from_str_radix(hex, 16),
-            None => text.parse(),
-        };
-        let Ok(number) = number else {
-            return Err(source.value(code, key, "a code: 0 to 65535, or 0x0 to 0xFFFF"));
-        };
+        let number = self::code(source, code, key)?;
         if let Some(first) = names.insert(number, name.clone()) {
             let problem = Problem::LabelClash {
-                code: text.clone(),
+                code: code.as_ref().clone(),
                 first,
                 second: name.clone(),
             };
@@ -318,4 +284,18 @@ pub(super) fn label_names(
         }
     }
     Ok(names)
+}
+
+/// A code as a key: decimal or `0x`.
+pub(super) fn code(
+    source: &Source<'_>,
+    written: &Spanned<String>,
+    key: &str,
+) -> Result<u16, ProfileError> {
+    let text = written.as_ref();
+    let number = match text.strip_prefix("0x") {
+        Some(hex) => u16::from_str_radix(hex, 16),
+        None => text.parse(),
+    };
+    number.map_err(|_| source.value(written, key, "a code: 0 to 65535, or 0x0 to 0xFFFF"))
 }
