@@ -11,12 +11,12 @@ pub(super) struct Fence<'a> {
     pub(super) most: u16,
     /// A read must not cross a multiple of this.
     pub(super) table_registers: Option<u16>,
-    /// What no read may touch.
-    pub(super) barriers: Areas,
     /// What a read may cover besides the registers of its points.
     holes: Holes,
     /// The registers of ordinary points.
     known: &'a Areas,
+    /// What no read may touch.
+    pub(super) barriers: Areas,
     /// What no read may begin or end inside of.
     pub(super) whole: &'a Areas,
     /// What no read may cover: where it begins, and the least end of all that begin there or later.
