@@ -130,7 +130,7 @@ fn row(point: &Point) -> Row {
     let range = point.limits.map(|(least, most)| format!("{least}..{most}"));
     let labels = match &point.labels {
         Labels::None => BTreeMap::new(),
-        Labels::Codes(names) | Labels::Bits(names) => names.clone(),
+        Labels::Codes(names) | Labels::Bits(names) => names.as_ref().clone(),
     };
     Row {
         name: point.name.clone(),
