@@ -116,8 +116,8 @@ fn a_profile_that_does_not_parse_is_named_with_line_and_key() {
         .code(2)
         .stderr(format!(
             "error: {path}:7: a.adress: unknown key, expected \
-             name, address, type, order, scale, unit, about, access, range, labels, no_value, \
-             alone, function, verified, page\n"
+             name, address, repeat, type, order, scale, span, unit, about, access, range, labels, \
+             no_value, only_with, alone, function, verified, page\n"
         ))
         .run();
 }
