@@ -46,14 +46,23 @@ _meterpoll() {
             meterpoll__subcmd__help,read-registers)
                 cmd="meterpoll__subcmd__help__subcmd__read__subcmd__registers"
                 ;;
+            meterpoll__subcmd__help__subcmd__meters,export)
+                cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__export"
+                ;;
             meterpoll__subcmd__help__subcmd__meters,list)
                 cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__list"
+                ;;
+            meterpoll__subcmd__meters,export)
+                cmd="meterpoll__subcmd__meters__subcmd__export"
                 ;;
             meterpoll__subcmd__meters,help)
                 cmd="meterpoll__subcmd__meters__subcmd__help"
                 ;;
             meterpoll__subcmd__meters,list)
                 cmd="meterpoll__subcmd__meters__subcmd__list"
+                ;;
+            meterpoll__subcmd__meters__subcmd__help,export)
+                cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__export"
                 ;;
             meterpoll__subcmd__meters__subcmd__help,help)
                 cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__help"
@@ -138,8 +147,22 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__help__subcmd__meters)
-            opts="list"
+            opts="list export"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__help__subcmd__meters__subcmd__export)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
             fi
@@ -194,7 +217,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__meters)
-            opts="-q -v -h -V --quiet --verbose --help --version list help"
+            opts="-q -v -h -V --quiet --verbose --help --version list export help"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -207,9 +230,37 @@ _meterpoll() {
             COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
             return 0
             ;;
-        meterpoll__subcmd__meters__subcmd__help)
-            opts="list help"
+        meterpoll__subcmd__meters__subcmd__export)
+            opts="-q -v -h -V --quiet --verbose --help --version"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__help)
+            opts="list export help"
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__help__subcmd__export)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
             fi
