@@ -35,6 +35,8 @@ pub struct Point {
     pub limits: Option<(i128, i128)>,
     /// Names of codes or of bits.
     pub labels: Labels,
+    /// The name of the table they stand in, where points share one.
+    pub label_table: Option<String>,
     /// What the meter stores in place of a value it does not have.
     pub no_value: Option<NoValue>,
     /// The setup it means anything with; `None` when it always does.
@@ -121,6 +123,7 @@ impl Point {
             access: Access::Read,
             limits: None,
             labels: Labels::None,
+            label_table: None,
             no_value: None,
             only_with: None,
             alone: false,

@@ -2,6 +2,7 @@
 //! meters measure in parts of a full scale that follows from their wiring and their transformers.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use rust_decimal::{Decimal, RoundingStrategy};
 use serde::{Deserialize, Serialize};
@@ -117,6 +118,82 @@ impl Scaling {
             Self::TimesFactor(name) => vec![name],
             Self::Span { low, high, .. } => {
                 [low, high].into_iter().filter_map(Operand::name).collect()
+            }
+        }
+    }
+}
+
+impl fmt::Display for Scaling {
+    /// `0.1`, `ct_ratio`, `1 at 40..70, 0.1 at 400..700`, `0..9999 → -pmax..pmax`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Times(scale) => scale.fmt(f),
+            Self::TimesFactor(name) => f.write_str(name),
+            Self::TimesByRaw(bands) => {
+                let bands: Vec<String> = bands.iter().map(Band::to_string).collect();
+                f.write_str(&bands.join(", "))
+            }
+            Self::Span { full, low, high } => write!(f, "0..{full} → {low}..{high}"),
+        }
+    }
+}
+
+impl fmt::Display for Band {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            lowest,
+            highest,
+            factor,
+        } = self;
+        write!(f, "{factor} at {lowest}..{highest}")
+    }
+}
+
+impl fmt::Display for Operand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Named { name, negative } => {
+                write!(f, "{}{name}", ["", "-"][usize::from(*negative)])
+            }
+        }
+    }
+}
+
+impl fmt::Display for Factor {
+    /// As a formula: `imax = 1.2 × ct_primary`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}", self.name, self.rule)
+    }
+}
+
+impl fmt::Display for Rule {
+    /// `1.2 × ct_primary`; `3 for raw wiring 1, 4; 2 for raw wiring 0; else 1`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Product(operands) => {
+                let operands: Vec<String> = operands.iter().map(Operand::to_string).collect();
+                f.write_str(&operands.join(" × "))
+            }
+            Self::Choice {
+                by,
+                cases,
+                otherwise,
+            } => {
+                let mut results: Vec<&Operand> = Vec::new();
+                for result in cases.values() {
+                    if !results.contains(&result) {
+                        results.push(result);
+                    }
+                }
+                let cases = results.into_iter().map(|result| {
+                    let codes = cases.iter().filter(|(_, case)| *case == result);
+                    let codes: Vec<String> = codes.map(|(code, _)| code.to_string()).collect();
+                    format!("{result} for raw {by} {}", codes.join(", "))
+                });
+                let otherwise = otherwise.iter().map(|result| format!("else {result}"));
+                let all: Vec<String> = cases.chain(otherwise).collect();
+                f.write_str(&all.join("; "))
             }
         }
     }

@@ -77,6 +77,10 @@ fn point(
             .map(|range| writable(source, range, kind, &key("range")))
             .transpose()?,
         labels,
+        label_table: match row.labels.as_ref().map(Spanned::as_ref) {
+            Some(LabelsKey::Shared(name)) => Some(name.clone()),
+            _ => None,
+        },
         no_value: row
             .no_value
             .as_ref()
