@@ -52,6 +52,9 @@ _meterpoll() {
             meterpoll__subcmd__help__subcmd__meters,list)
                 cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__list"
                 ;;
+            meterpoll__subcmd__help__subcmd__meters,show)
+                cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__show"
+                ;;
             meterpoll__subcmd__meters,export)
                 cmd="meterpoll__subcmd__meters__subcmd__export"
                 ;;
@@ -61,6 +64,9 @@ _meterpoll() {
             meterpoll__subcmd__meters,list)
                 cmd="meterpoll__subcmd__meters__subcmd__list"
                 ;;
+            meterpoll__subcmd__meters,show)
+                cmd="meterpoll__subcmd__meters__subcmd__show"
+                ;;
             meterpoll__subcmd__meters__subcmd__help,export)
                 cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__export"
                 ;;
@@ -69,6 +75,9 @@ _meterpoll() {
                 ;;
             meterpoll__subcmd__meters__subcmd__help,list)
                 cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__list"
+                ;;
+            meterpoll__subcmd__meters__subcmd__help,show)
+                cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__show"
                 ;;
             *)
                 ;;
@@ -147,7 +156,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__help__subcmd__meters)
-            opts="list export"
+            opts="list show export"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -175,6 +184,20 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__help__subcmd__meters__subcmd__list)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__help__subcmd__meters__subcmd__show)
             opts=""
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
@@ -217,7 +240,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__meters)
-            opts="-q -v -h -V --quiet --verbose --help --version list export help"
+            opts="-q -v -h -V --quiet --verbose --help --version list show export help"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -245,7 +268,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__meters__subcmd__help)
-            opts="list export help"
+            opts="list show export help"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -300,6 +323,20 @@ _meterpoll() {
             COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
             return 0
             ;;
+        meterpoll__subcmd__meters__subcmd__help__subcmd__show)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
         meterpoll__subcmd__meters__subcmd__list)
             opts="-q -v -h -V --quiet --verbose --help --version"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
@@ -307,6 +344,28 @@ _meterpoll() {
                 return 0
             fi
             case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__show)
+            opts="-f -q -v -h -V --format --quiet --verbose --help --version"
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                --format)
+                    COMPREPLY=($(compgen -W "table csv json" -- "${cur}"))
+                    return 0
+                    ;;
+                -f)
+                    COMPREPLY=($(compgen -W "table csv json" -- "${cur}"))
+                    return 0
+                    ;;
                 *)
                     COMPREPLY=()
                     ;;

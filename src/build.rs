@@ -56,11 +56,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             Path::new(&out).join(&packed),
             postcard::to_stdvec(&profile)?,
         )?;
-        let text = fs::canonicalize(&path)?;
         writeln!(
             list,
-            "Builtin {{ name: {name:?}, text: include_str!({text:?}), \
-             packed: include_bytes!({packed:?}) }},"
+            "Builtin {{ \
+             name: {name:?}, \
+             text: include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/{METERS}/{name}.toml\")), \
+             packed: include_bytes!({packed:?}) \
+             }},"
         )?;
     }
     list.push_str("];\n");

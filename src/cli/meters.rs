@@ -1,6 +1,6 @@
 //! Arguments of `meters` and its commands.
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 
 /// Arguments of `meters`.
 #[derive(Debug, Args)]
@@ -15,8 +15,44 @@ pub struct Meters {
 pub enum MetersCommand {
     /// List the meters inside the program and your own
     List,
+    /// Show a meter: its line, limits and groups, and its points
+    Show(ShowMeter),
     /// Print the profile of a meter as the TOML file that it is
     Export(ExportMeter),
+}
+
+const SHOW_EXAMPLES: &str = "\
+Examples:
+  meterpoll meters show pqm
+  meterpoll meters show pqm @energy 'voltage_*'
+  meterpoll meters show pqm current_a
+  meterpoll meters show ./mine.toml -f csv";
+
+/// Arguments of `meters show`.
+#[derive(Debug, Args)]
+#[command(after_help = SHOW_EXAMPLES)]
+pub struct ShowMeter {
+    /// A name that `meters list` shows, or a profile file
+    #[arg(value_name = "METER")]
+    pub meter: String,
+    /// The points to show: names (`current_a`), globs (`current_*`), groups (`@energy`) [default: the
+    /// meter as a whole and all its points]
+    #[arg(value_name = "WHAT")]
+    pub what: Vec<String>,
+    /// How they are shown
+    #[arg(short, long, value_name = "FORMAT", default_value = "table")]
+    pub format: ShowFormat,
+}
+
+/// `--format` of `meters show`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ShowFormat {
+    /// For people; a single point with all there is to say about it
+    Table,
+    /// Comma-separated values with a header, a row a point
+    Csv,
+    /// One object, with the points in an array
+    Json,
 }
 
 const EXPORT_EXAMPLES: &str = "\

@@ -2,6 +2,7 @@
 
 mod export;
 mod list;
+mod show;
 
 use super::report::Report;
 use super::{CommandError, ExitCode};
@@ -11,6 +12,7 @@ use crate::cli::{Meters, MetersCommand};
 pub(super) fn run(arguments: &Meters, report: &mut Report) -> Result<ExitCode, CommandError> {
     match &arguments.command {
         None | Some(MetersCommand::List) => list::run(report),
+        Some(MetersCommand::Show(arguments)) => show::run(arguments, report),
         Some(MetersCommand::Export(arguments)) => export::run(arguments),
     }
 }

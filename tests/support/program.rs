@@ -37,6 +37,13 @@ impl Program {
         self
     }
 
+    /// More arguments, split at spaces.
+    pub(crate) fn arguments(mut self, arguments: &str) -> Self {
+        let arguments = arguments.split_whitespace().map(OsString::from);
+        self.arguments.extend(arguments);
+        self
+    }
+
     /// An environment variable.
     pub(crate) fn variable(mut self, name: &'static str, value: impl Into<OsString>) -> Self {
         self.variables.push((name, value.into()));
