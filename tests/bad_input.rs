@@ -97,7 +97,7 @@ fn an_unknown_meter_is_answered_with_the_list() {
     Program::new("read-registers -p sim: -a 17 --meter pmq")
         .code(2)
         .stderr(
-            "error: there is no meter 'pmq'; known are pqm\n\
+            "error: there is no meter 'pmq'; known are em21, em24, pm290, pqm\n\
              hint: `meterpoll meters list` shows them; a profile file is named by its path\n",
         )
         .run();

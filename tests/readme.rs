@@ -65,7 +65,7 @@ fn every_example_that_needs_no_adapter_runs() {
             ran += 1;
         }
     }
-    assert_eq!(ran, 7);
+    assert_eq!(ran, 8);
 }
 
 #[test]

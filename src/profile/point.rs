@@ -1,6 +1,7 @@
 //! A point: one quantity of a meter, where it lies and what it means.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rust_decimal::Decimal;
 use rust_decimal::prelude::ToPrimitive;
@@ -34,9 +35,11 @@ pub struct Point {
     /// Lowest and highest raw integer that may be written.
     pub limits: Option<(i128, i128)>,
     /// Names of codes or of bits.
+    #[serde(skip)]
     pub labels: Labels,
     /// The name of the table they stand in, where points share one.
-    pub label_table: Option<String>,
+    #[serde(skip)]
+    pub label_table: Option<Arc<str>>,
     /// What the meter stores in place of a value it does not have.
     pub no_value: Option<NoValue>,
     /// The setup it means anything with; `None` when it always does.
@@ -70,17 +73,21 @@ impl Access {
     }
 }
 
-/// Names for numbers or bits, by the register that holds them.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+/// Names for numbers or bits, by the register that holds them. Points that share a table of the
+/// profile hold the same one.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Labels {
     /// None: the number itself is shown.
     #[default]
     None,
     /// A name a code.
-    Codes(BTreeMap<u16, String>),
+    Codes(Arc<Names>),
     /// A name a mask, lowest bit first.
-    Bits(BTreeMap<u16, String>),
+    Bits(Arc<Names>),
 }
+
+/// Names by the codes or masks they stand for.
+pub type Names = BTreeMap<u16, String>;
 
 /// The marker a meter stores in place of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -139,6 +146,24 @@ impl Point {
             Scaling::Times(scale) => Some(scale),
             _ => None,
         }
+    }
+
+    /// The difference that one raw step makes, on a meter that is set up like this; 0 where steps
+    /// are not known or too small to tell.
+    pub fn step(&self, scales: Scales<'_>) -> f64 {
+        let step = match (&self.scaling, self.kind.is_integer()) {
+            (_, false) => None,
+            (Scaling::Times(scale), true) => Some(*scale),
+            (Scaling::TimesFactor(name), true) => scales.named(name).ok(),
+            (Scaling::TimesByRaw(bands), true) => bands.iter().map(|band| band.factor).max(),
+            (Scaling::Span { full, low, high }, true) => scales
+                .operand(high)
+                .ok()
+                .zip(scales.operand(low).ok())
+                .and_then(|(high, low)| high.checked_sub(low)?.checked_div((*full).into())),
+        };
+        step.and_then(|step| step.abs().to_f64())
+            .unwrap_or_default()
     }
 
     /// What the registers of this point mean on a meter that is set up like this.
@@ -265,7 +290,7 @@ const fn finite(number: f64) -> Result<f64, Missing> {
 }
 
 /// Names of the bits that are set, `|` between them; bits without a name as one number in hex.
-fn bit_names(names: &BTreeMap<u16, String>, word: u16) -> String {
+fn bit_names(names: &Names, word: u16) -> String {
     let mut shown: Vec<String> = Vec::new();
     let mut unknown = word;
     for (mask, name) in names {

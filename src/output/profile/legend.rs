@@ -25,7 +25,7 @@ impl<'a> Legend<'a> {
         let mut legend = Self(Vec::new());
         for point in points {
             if !fits(point) && legend.entry(point).is_none() {
-                let name = point.label_table.as_ref().unwrap_or(&point.name);
+                let name = point.label_table.as_deref().unwrap_or(&point.name);
                 legend.0.push(Entry { name, point });
             }
         }
