@@ -30,10 +30,10 @@ fn points_that_are_named_come_in_their_order_with_the_formulas_they_need() {
     bench("pt_ratio voltage_a? reset voltage_ab")
         .stdout(
             "bench: Meter on the bench\n\n\
-             ADDRESS  NAME        TYPE  SCALE              UNIT  ACCESS        LABELS  PAGE\n\
-             0x0901   pt_ratio    u16   0.1                      rw 10..65000          24\n\
-             0x0102   voltage_ab  u16   0..9999 → 0..vmax  V                           20\n\
-             0x0A00   reset       hex                            w 0xFFFF      reset\n\n\
+             ADDRESS  NAME        TYPE  SCALE              UNIT  ACCESS        PAGE  LABELS\n\
+             0x0901   pt_ratio    u16   0.1                      rw 10..65000  24\n\
+             0x0102   voltage_ab  u16   0..9999 → 0..vmax  V                   20\n\
+             0x0A00   reset       hex                            w 0xFFFF            reset\n\n\
              vmax = 660 for raw pt_ratio 10; else vmax_of_ratio\n\
              vmax_of_ratio = 144 × pt_ratio\n\n\
              reset  0xFFFF=restart the meter, as after a power failure\n",
@@ -46,13 +46,14 @@ fn columns_that_would_be_empty_are_left_out() {
     bench("@default")
         .stdout(
             "bench: Meter on the bench\n\n\
-             ADDRESS  NAME         TYPE  SCALE                         UNIT  PAGE\n\
-             0x0100   voltage_a *  u16   0..9999 → 0..vmax             V     20\n\
-             0x0101   voltage_b    u16   0..9999 → 0..vmax             V     20\n\
-             0x0102   voltage_ab   u16   0..9999 → 0..vmax             V     20\n\
-             0x0110   frequency    u16   1 at 40..70, 0.1 at 400..700  Hz    21\n\n\
+             ADDRESS  NAME         TYPE  SCALE              UNIT  PAGE\n\
+             0x0100   voltage_a *  u16   0..9999 → 0..vmax  V     20\n\
+             0x0101   voltage_b    u16   0..9999 → 0..vmax  V     20\n\
+             0x0102   voltage_ab   u16   0..9999 → 0..vmax  V     20\n\
+             0x0110   frequency    u16   by raw number      Hz    21\n\n\
              vmax = 660 for raw pt_ratio 10; else vmax_of_ratio\n\
              vmax_of_ratio = 144 × pt_ratio\n\n\
+             frequency  1 at raw 40..70; 0.1 at raw 400..700\n\n\
              * not verified: address or scale was not read in the maker's manual\n",
         )
         .run();
@@ -62,16 +63,16 @@ fn columns_that_would_be_empty_are_left_out() {
 fn quietly_there_is_only_the_table() {
     bench("voltage_a inputs_2 -q")
         .stdout(
-            "ADDRESS  NAME         TYPE  SCALE              UNIT  LABELS    PAGE\n\
-             0x0100   voltage_a *  u16   0..9999 → 0..vmax  V               20\n\
-             0x0131   inputs_2     bits                           inputs_2\n\n\
+            "ADDRESS  NAME         TYPE  SCALE              UNIT  PAGE  LABELS\n\
+             0x0100   voltage_a *  u16   0..9999 → 0..vmax  V     20\n\
+             0x0131   inputs_2     bits                                 inputs_2\n\n\
              inputs_2  0x0001=input 1, 0x0002=input 2\n",
         )
         .run();
     bench("wiring -q")
         .stdout(
-            "ADDRESS  NAME    TYPE  SCALE  ACCESS   LABELS   PAGE\n\
-             0x0900   wiring  u16   1      rw 0..2  wirings  24\n\n\
+            "ADDRESS  NAME    TYPE  SCALE  ACCESS   PAGE  LABELS\n\
+             0x0900   wiring  u16   1      rw 0..2  24    wirings\n\n\
              wirings  0=three wires, two elements, 1=four wires, three elements,\n         \
              2=single phase\n",
         )
@@ -115,6 +116,8 @@ fn a_single_point_comes_with_everything_there_is_to_say_about_it() {
              type       u16\n\
              scale      1\n\
              access     read\n\
+             labels     57 = type A\n           \
+             58 = type B\n\
              verified   yes\n\
              page       22 of Bench meter, protocol manual\n",
         )

@@ -275,7 +275,7 @@ fn factors_and_scales_print_as_formulas() {
         ("counter", "step"),
         ("watts", "0..9999 → -pmax..pmax"),
         ("hertz", "0..9999 → 45..65"),
-        ("mains", "1 at 0..0, 1 at 40..70, 0.1 at 400..700"),
+        ("mains", "1 at raw 0, 40..70; 0.1 at raw 400..700"),
     ] {
         let point = meter().point(point).expect("a point");
         assert_eq!(point.scaling.to_string(), expected, "{}", point.name);

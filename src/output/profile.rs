@@ -51,6 +51,7 @@ impl Shown<'_> {
             }
             (Extent::Bare, _) => {}
         }
+        parts.extend(listing::scales(points));
         parts.extend(legend.text());
         if extent != Extent::Bare {
             parts.extend(listing::footnote(points));

@@ -123,29 +123,49 @@ impl Scaling {
 }
 
 impl fmt::Display for Scaling {
-    /// `0.1`, `ct_ratio`, `1 at 40..70, 0.1 at 400..700`, `0..9999 → -pmax..pmax`.
+    /// `0.1`, `ct_ratio`, `1 at raw 40..70; 0.1 at raw 0, 400..700`, `0..9999 → -pmax..pmax`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Times(scale) => scale.fmt(f),
             Self::TimesFactor(name) => f.write_str(name),
             Self::TimesByRaw(bands) => {
-                let bands: Vec<String> = bands.iter().map(Band::to_string).collect();
-                f.write_str(&bands.join(", "))
+                let raw = bands.iter().map(|band| (raw(band), &band.factor));
+                f.write_str(&by_result(raw, "at raw"))
             }
             Self::Span { full, low, high } => write!(f, "0..{full} → {low}..{high}"),
         }
     }
 }
 
-impl fmt::Display for Band {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            lowest,
-            highest,
-            factor,
-        } = self;
-        write!(f, "{factor} at {lowest}..{highest}")
+/// The raw numbers of a band.
+fn raw(band: &Band) -> String {
+    let Band {
+        lowest, highest, ..
+    } = band;
+    if lowest == highest {
+        lowest.to_string()
+    } else {
+        format!("{lowest}..{highest}")
     }
+}
+
+/// Cases that have one result together: `3 for raw wiring 1, 4; 2 for raw wiring 0`.
+fn by_result<T: PartialEq + fmt::Display>(
+    cases: impl Iterator<Item = (String, T)>,
+    condition: &str,
+) -> String {
+    let mut results: Vec<(T, Vec<String>)> = Vec::new();
+    for (case, result) in cases {
+        match results.iter_mut().find(|(known, _)| *known == result) {
+            Some((_, cases)) => cases.push(case),
+            None => results.push((result, vec![case])),
+        }
+    }
+    let results = results.iter();
+    let texts: Vec<String> = results
+        .map(|(result, cases)| format!("{result} {condition} {}", cases.join(", ")))
+        .collect();
+    texts.join("; ")
 }
 
 impl fmt::Display for Operand {
@@ -179,20 +199,14 @@ impl fmt::Display for Rule {
                 cases,
                 otherwise,
             } => {
-                let mut results: Vec<&Operand> = Vec::new();
-                for result in cases.values() {
-                    if !results.contains(&result) {
-                        results.push(result);
-                    }
+                let cases = cases
+                    .iter()
+                    .map(|(code, result)| (code.to_string(), result));
+                f.write_str(&by_result(cases, &format!("for raw {by}")))?;
+                match otherwise {
+                    None => Ok(()),
+                    Some(result) => write!(f, "; else {result}"),
                 }
-                let cases = results.into_iter().map(|result| {
-                    let codes = cases.iter().filter(|(_, case)| *case == result);
-                    let codes: Vec<String> = codes.map(|(code, _)| code.to_string()).collect();
-                    format!("{result} for raw {by} {}", codes.join(", "))
-                });
-                let otherwise = otherwise.iter().map(|result| format!("else {result}"));
-                let all: Vec<String> = cases.chain(otherwise).collect();
-                f.write_str(&all.join("; "))
             }
         }
     }

@@ -4,9 +4,11 @@ use humantime::format_duration as time;
 use rust_decimal::Decimal;
 
 use super::sheet::Sheet;
+use super::terms;
 use crate::codec::FunctionCode;
 use crate::output::escape;
-use crate::profile::model::Limits;
+use crate::profile::identity::Identity;
+use crate::profile::model::{Identification, Limits};
 use crate::profile::{Point, Profile};
 
 /// Name and title, and what there is to say about the meter as a whole.
@@ -17,11 +19,7 @@ pub(super) fn head(profile: &Profile) -> String {
     limits(&mut sheet, &profile.limits);
     match &profile.identification {
         None => sheet.text("recognised", "by no register"),
-        Some(known) => {
-            let codes: Vec<String> = known.codes.iter().map(u16::to_string).collect();
-            let codes = codes.join(" or ");
-            sheet.text("recognised", &format!("{} holds {codes}", known.point));
-        }
+        Some(known) => sheet.list("recognised", recognised(profile, known)),
     }
     let groups = profile.groups.iter();
     sheet.list(
@@ -29,13 +27,40 @@ pub(super) fn head(profile: &Profile) -> String {
         groups.map(|group| format!("@{} ({})", group.name, group.members.len())),
     );
     sheet.lines("factors", profile.factors.iter().map(ToString::to_string));
-    let identities = profile.identities.iter().map(|identity| {
-        let percent = (identity.tolerance * Decimal::ONE_HUNDRED).normalize();
-        format!("{}, within {percent} %", identity.law)
-    });
-    sheet.lines("identities", identities);
+    sheet.lines("identities", identities(&profile.identities));
     sheet.text("points", &count(&profile.points));
     format!("{}: {}\n\n{sheet}", profile.name, escape(&profile.title))
+}
+
+/// `device_code holds 57 (EM21 AV5), 58 (EM21 AV6)`, in its parts.
+fn recognised(profile: &Profile, known: &Identification) -> Vec<String> {
+    let labels = profile.point(&known.point).map(terms::labels);
+    let labels = labels.unwrap_or_default();
+    let mut codes: Vec<String> = Vec::new();
+    for code in known.codes.iter().map(u16::to_string) {
+        let name = labels.iter().find(|(number, _)| *number == code);
+        let name = name.map(|(_, name)| format!(" ({name})"));
+        codes.push(code + &name.unwrap_or_default());
+    }
+    if let Some(first) = codes.first_mut() {
+        *first = format!("{} holds {first}", known.point);
+    }
+    codes
+}
+
+/// The formulas, those of one tolerance together.
+fn identities(identities: &[Identity]) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut last = None;
+    for Identity { law, tolerance } in identities {
+        if last != Some(tolerance) {
+            let percent = (tolerance * Decimal::ONE_HUNDRED).normalize();
+            lines.push(format!("within {percent} %:"));
+            last = Some(tolerance);
+        }
+        lines.push(law.to_string());
+    }
+    lines
 }
 
 /// How many there are, and how many of them are not verified.
@@ -63,15 +88,13 @@ fn limits(sheet: &mut Sheet, limits: &Limits) {
     } else {
         "no holes between points"
     };
-    let mut read = format!("at most {} registers, {holes}", limits.read_registers);
+    let mut read = format!("at most {}, {holes}", registers(limits.read_registers));
     if let Some(size) = limits.table_registers {
         read = format!("{read}, within a table of {size}");
     }
     sheet.text("one read", &read);
-    sheet.text(
-        "one write",
-        &format!("at most {} registers", limits.write_registers),
-    );
+    let write = format!("at most {}", registers(limits.write_registers));
+    sheet.text("one write", &write);
     let mut answer = format!("within {}", time(limits.longest_answer));
     if !limits.typical_answer.is_zero() {
         answer = format!("{answer}, after {} as a rule", time(limits.typical_answer));
@@ -89,4 +112,11 @@ fn limits(sheet: &mut Sheet, limits: &Limits) {
 fn named(function: FunctionCode) -> String {
     let name = function.name().unwrap_or_default();
     format!("{:02} {name}", function.get())
+}
+
+fn registers(count: u16) -> String {
+    match count {
+        1 => "1 register".to_owned(),
+        _ => format!("{count} registers"),
+    }
 }

@@ -1,11 +1,13 @@
 //! Points in a table.
 
 use super::legend::Legend;
+use super::sheet::Sheet;
 use super::terms;
 use crate::output::columns::columns;
 use crate::output::escape;
 use crate::output::table::{FOOTNOTE, UNVERIFIED};
 use crate::profile::point::Access;
+use crate::profile::scaling::Scaling;
 use crate::profile::{Point, Profile};
 
 /// What a column has for a point.
@@ -21,8 +23,8 @@ pub(super) fn table(points: &[Point], legend: &Legend<'_>) -> String {
         ("UNIT", &unit),
         ("FUNCTION", &function),
         ("ACCESS", &access),
-        ("LABELS", &|point| legend.cell(point)),
         ("PAGE", &page),
+        ("LABELS", &|point| legend.cell(point)),
     ];
     let mut header = Vec::new();
     let mut lines = vec![Vec::new(); points.len()];
@@ -58,8 +60,12 @@ fn kind(point: &Point) -> String {
     format!("{}{}", point.kind, order.unwrap_or_default())
 }
 
+/// Of more than one factor only that there are: they stand below.
 fn scale(point: &Point) -> String {
-    terms::scale(point).unwrap_or_default()
+    match point.scaling {
+        Scaling::TimesByRaw(_) => "by raw number".to_owned(),
+        _ => terms::scale(point).unwrap_or_default(),
+    }
 }
 
 fn unit(point: &Point) -> String {
@@ -92,6 +98,18 @@ fn access(point: &Point) -> String {
 
 fn page(point: &Point) -> String {
     point.page.clone()
+}
+
+/// The scales that go by the raw number.
+pub(super) fn scales(points: &[Point]) -> Option<String> {
+    let mut sheet = Sheet::default();
+    let long = points
+        .iter()
+        .filter(|point| matches!(point.scaling, Scaling::TimesByRaw(_)));
+    for point in long.clone() {
+        sheet.text(&point.name, &point.scaling.to_string());
+    }
+    (long.count() > 0).then(|| sheet.to_string())
 }
 
 /// The factors that scales in the table name.

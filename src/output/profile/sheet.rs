@@ -18,12 +18,14 @@ struct Entry {
     term: String,
     /// What stays in one line, each with what stands before the next.
     pieces: Vec<String>,
+    /// How much further in it goes on in the lines after its first.
+    hanging: usize,
 }
 
 impl Sheet {
     /// Adds a term and a text, which is broken at its spaces.
     pub(super) fn text(&mut self, term: &str, text: &str) {
-        self.add(term, text.split(' ').map(escape).collect());
+        self.add(term, text.split(' ').map(escape).collect(), 0);
     }
 
     /// Adds a term and a list, which is broken between its items.
@@ -33,21 +35,24 @@ impl Sheet {
         if let Some(last) = pieces.last_mut() {
             last.pop();
         }
-        self.add(term, pieces);
+        self.add(term, pieces, 0);
     }
 
     /// Adds a term and texts that each begin a line.
     pub(super) fn lines(&mut self, term: &str, texts: impl IntoIterator<Item = String>) {
         let mut term = term;
         for text in texts {
-            self.text(term, &text);
+            self.add(term, text.split(' ').map(escape).collect(), 2);
             term = "";
         }
     }
 
-    fn add(&mut self, term: &str, pieces: Vec<String>) {
-        let term = escape(term);
-        self.entries.push(Entry { term, pieces });
+    fn add(&mut self, term: &str, pieces: Vec<String>, hanging: usize) {
+        self.entries.push(Entry {
+            term: escape(term),
+            pieces,
+            hanging,
+        });
     }
 }
 
@@ -55,13 +60,18 @@ impl fmt::Display for Sheet {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let terms = self.entries.iter().map(|entry| entry.term.chars().count());
         let indent = terms.max().unwrap_or_default() + 2;
-        for Entry { term, pieces } in &self.entries {
+        for Entry {
+            term,
+            pieces,
+            hanging,
+        } in &self.entries
+        {
             let mut line = format!("{term:indent$}");
             let mut is_begun = false;
             for piece in pieces {
                 if is_begun && line.chars().count() + 1 + piece.chars().count() > WIDTH {
                     writeln!(f, "{}", line.trim_end())?;
-                    line = " ".repeat(indent);
+                    line = " ".repeat(indent + hanging);
                     is_begun = false;
                 }
                 if is_begun {
