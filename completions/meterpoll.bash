@@ -46,6 +46,9 @@ _meterpoll() {
             meterpoll__subcmd__help,read-registers)
                 cmd="meterpoll__subcmd__help__subcmd__read__subcmd__registers"
                 ;;
+            meterpoll__subcmd__help__subcmd__meters,check)
+                cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__check"
+                ;;
             meterpoll__subcmd__help__subcmd__meters,export)
                 cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__export"
                 ;;
@@ -54,6 +57,9 @@ _meterpoll() {
                 ;;
             meterpoll__subcmd__help__subcmd__meters,show)
                 cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__show"
+                ;;
+            meterpoll__subcmd__meters,check)
+                cmd="meterpoll__subcmd__meters__subcmd__check"
                 ;;
             meterpoll__subcmd__meters,export)
                 cmd="meterpoll__subcmd__meters__subcmd__export"
@@ -66,6 +72,9 @@ _meterpoll() {
                 ;;
             meterpoll__subcmd__meters,show)
                 cmd="meterpoll__subcmd__meters__subcmd__show"
+                ;;
+            meterpoll__subcmd__meters__subcmd__help,check)
+                cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__check"
                 ;;
             meterpoll__subcmd__meters__subcmd__help,export)
                 cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__export"
@@ -156,8 +165,22 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__help__subcmd__meters)
-            opts="list show export"
+            opts="list show export check"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__help__subcmd__meters__subcmd__check)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
             fi
@@ -240,8 +263,22 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__meters)
-            opts="-q -v -h -V --quiet --verbose --help --version list show export help"
+            opts="-q -v -h -V --quiet --verbose --help --version list show export check help"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__check)
+            opts="-q -v -h -V --quiet --verbose --help --version"
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
             fi
@@ -268,8 +305,22 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__meters__subcmd__help)
-            opts="list show export help"
+            opts="list show export check help"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__help__subcmd__check)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
             fi

@@ -67,7 +67,12 @@ const LIBRARIES: [(&str, &[&str]); 20] = [
     ("thiserror", EVERYWHERE),
     (
         "toml",
-        &["profile/format.rs", "profile/load.rs", "profile/load/"],
+        &[
+            "profile/advice/",
+            "profile/format.rs",
+            "profile/load.rs",
+            "profile/load/",
+        ],
     ),
     ("uzers", &["transport/serial.rs"]),
     ("wildmatch", &["profile/"]),

@@ -1,6 +1,8 @@
 //! Arguments of `meters` and its commands.
 
-use clap::{Args, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum, ValueHint};
 
 /// Arguments of `meters`.
 #[derive(Debug, Args)]
@@ -19,6 +21,8 @@ pub enum MetersCommand {
     Show(ShowMeter),
     /// Print the profile of a meter as the TOML file that it is
     Export(ExportMeter),
+    /// Check profile files: whether they load, and what they may lack all the same
+    Check(CheckMeters),
 }
 
 const SHOW_EXAMPLES: &str = "\
@@ -67,4 +71,18 @@ pub struct ExportMeter {
     /// A name that `meters list` shows, or a profile file
     #[arg(value_name = "METER")]
     pub meter: String,
+}
+
+const CHECK_EXAMPLES: &str = "\
+Examples:
+  meterpoll meters check mine.toml
+  meterpoll meters check ~/.config/meterpoll/meters/*.toml";
+
+/// Arguments of `meters check`.
+#[derive(Debug, Args)]
+#[command(after_help = CHECK_EXAMPLES)]
+pub struct CheckMeters {
+    /// Profile files; what is wrong with one goes to stderr, advice to stdout
+    #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
+    pub files: Vec<PathBuf>,
 }

@@ -1,5 +1,6 @@
 //! `meters`: what the program knows about meters.
 
+mod check;
 mod export;
 mod list;
 mod show;
@@ -14,5 +15,6 @@ pub(super) fn run(arguments: &Meters, report: &mut Report) -> Result<ExitCode, C
         None | Some(MetersCommand::List) => list::run(report),
         Some(MetersCommand::Show(arguments)) => show::run(arguments, report),
         Some(MetersCommand::Export(arguments)) => export::run(arguments),
+        Some(MetersCommand::Check(arguments)) => check::run(arguments, report),
     }
 }

@@ -76,3 +76,15 @@ impl Shown<'_> {
         json::json(self.profile, self.points)
     }
 }
+
+/// How many points there are, and how many of them are not verified.
+pub fn count(points: &[Point]) -> String {
+    let all = match points.len() {
+        1 => "1 point".to_owned(),
+        count => format!("{count} points"),
+    };
+    match points.iter().filter(|point| !point.verified).count() {
+        0 => format!("{all}, all verified"),
+        unverified => format!("{all}, {unverified} not verified"),
+    }
+}

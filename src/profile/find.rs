@@ -159,7 +159,11 @@ pub fn file(path: &Path) -> Result<Profile, FindError> {
     Ok(load::load(&path.display().to_string(), &text)?)
 }
 
-fn text(path: &Path) -> Result<String, FindError> {
+/// Reads a profile's file.
+///
+/// # Errors
+/// [`FindError::Unreadable`].
+pub fn text(path: &Path) -> Result<String, FindError> {
     std::fs::read_to_string(path).map_err(|source| FindError::Unreadable {
         file: path.display().to_string(),
         source,

@@ -7,9 +7,9 @@ use super::sheet::Sheet;
 use super::terms;
 use crate::codec::FunctionCode;
 use crate::output::escape;
+use crate::profile::Profile;
 use crate::profile::identity::Identity;
 use crate::profile::model::{Identification, Limits};
-use crate::profile::{Point, Profile};
 
 /// Name and title, and what there is to say about the meter as a whole.
 pub(super) fn head(profile: &Profile) -> String {
@@ -28,7 +28,7 @@ pub(super) fn head(profile: &Profile) -> String {
     );
     sheet.lines("factors", profile.factors.iter().map(ToString::to_string));
     sheet.lines("identities", identities(&profile.identities));
-    sheet.text("points", &count(&profile.points));
+    sheet.text("holds", &super::count(&profile.points));
     format!("{}: {}\n\n{sheet}", profile.name, escape(&profile.title))
 }
 
@@ -61,15 +61,6 @@ fn identities(identities: &[Identity]) -> Vec<String> {
         lines.push(law.to_string());
     }
     lines
-}
-
-/// How many there are, and how many of them are not verified.
-pub(super) fn count(points: &[Point]) -> String {
-    let all = points.len();
-    match points.iter().filter(|point| !point.verified).count() {
-        0 => format!("{all}, all verified"),
-        unverified => format!("{all}, {unverified} not verified"),
-    }
 }
 
 fn limits(sheet: &mut Sheet, limits: &Limits) {

@@ -69,7 +69,7 @@ fn point(
         kind,
         order,
         scaling,
-        unit: row.unit.clone(),
+        unit: row.unit.clone().filter(|unit| !unit.is_empty()),
         access: access(source, row.access.as_ref(), &key("access"))?,
         limits: row
             .range
