@@ -46,8 +46,23 @@ _meterpoll() {
             meterpoll__subcmd__help,read-registers)
                 cmd="meterpoll__subcmd__help__subcmd__read__subcmd__registers"
                 ;;
+            meterpoll__subcmd__help__subcmd__meters,check)
+                cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__check"
+                ;;
+            meterpoll__subcmd__help__subcmd__meters,export)
+                cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__export"
+                ;;
             meterpoll__subcmd__help__subcmd__meters,list)
                 cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__list"
+                ;;
+            meterpoll__subcmd__help__subcmd__meters,show)
+                cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__show"
+                ;;
+            meterpoll__subcmd__meters,check)
+                cmd="meterpoll__subcmd__meters__subcmd__check"
+                ;;
+            meterpoll__subcmd__meters,export)
+                cmd="meterpoll__subcmd__meters__subcmd__export"
                 ;;
             meterpoll__subcmd__meters,help)
                 cmd="meterpoll__subcmd__meters__subcmd__help"
@@ -55,11 +70,23 @@ _meterpoll() {
             meterpoll__subcmd__meters,list)
                 cmd="meterpoll__subcmd__meters__subcmd__list"
                 ;;
+            meterpoll__subcmd__meters,show)
+                cmd="meterpoll__subcmd__meters__subcmd__show"
+                ;;
+            meterpoll__subcmd__meters__subcmd__help,check)
+                cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__check"
+                ;;
+            meterpoll__subcmd__meters__subcmd__help,export)
+                cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__export"
+                ;;
             meterpoll__subcmd__meters__subcmd__help,help)
                 cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__help"
                 ;;
             meterpoll__subcmd__meters__subcmd__help,list)
                 cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__list"
+                ;;
+            meterpoll__subcmd__meters__subcmd__help,show)
+                cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__show"
                 ;;
             *)
                 ;;
@@ -138,7 +165,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__help__subcmd__meters)
-            opts="list"
+            opts="list show export check"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -151,7 +178,49 @@ _meterpoll() {
             COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
             return 0
             ;;
+        meterpoll__subcmd__help__subcmd__meters__subcmd__check)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__help__subcmd__meters__subcmd__export)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
         meterpoll__subcmd__help__subcmd__meters__subcmd__list)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__help__subcmd__meters__subcmd__show)
             opts=""
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
@@ -194,7 +263,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__meters)
-            opts="-q -v -h -V --quiet --verbose --help --version list help"
+            opts="-q -v -h -V --quiet --verbose --help --version list show export check help"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -207,9 +276,65 @@ _meterpoll() {
             COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
             return 0
             ;;
-        meterpoll__subcmd__meters__subcmd__help)
-            opts="list help"
+        meterpoll__subcmd__meters__subcmd__check)
+            opts="-q -v -h -V --quiet --verbose --help --version"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__export)
+            opts="-q -v -h -V --quiet --verbose --help --version"
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__help)
+            opts="list show export check help"
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__help__subcmd__check)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__help__subcmd__export)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
             fi
@@ -249,6 +374,20 @@ _meterpoll() {
             COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
             return 0
             ;;
+        meterpoll__subcmd__meters__subcmd__help__subcmd__show)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
         meterpoll__subcmd__meters__subcmd__list)
             opts="-q -v -h -V --quiet --verbose --help --version"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
@@ -256,6 +395,28 @@ _meterpoll() {
                 return 0
             fi
             case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__show)
+            opts="-f -q -v -h -V --format --quiet --verbose --help --version"
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                --format)
+                    COMPREPLY=($(compgen -W "table csv json" -- "${cur}"))
+                    return 0
+                    ;;
+                -f)
+                    COMPREPLY=($(compgen -W "table csv json" -- "${cur}"))
+                    return 0
+                    ;;
                 *)
                     COMPREPLY=()
                     ;;

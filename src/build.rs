@@ -59,7 +59,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         )?;
         writeln!(
             list,
-            "Builtin {{ name: {name:?}, packed: include_bytes!({packed:?}) }},"
+            "Builtin {{ \
+             name: {name:?}, \
+             text: include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/{METERS}/{name}.toml\")), \
+             packed: include_bytes!({packed:?}) \
+             }},"
         )?;
     }
     list.push_str("];\n");

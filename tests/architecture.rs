@@ -19,7 +19,7 @@ const LAYERS: [(&str, &[&str]); 12] = [
     ("client", &["codec", "transport"]),
     ("sim", &["codec", "transport", "profile"]),
     ("readings", &["codec", "client", "profile"]),
-    ("output", &["profile", "readings"]),
+    ("output", &["codec", "profile", "readings"]),
     ("cli", &[]),
     (
         "commands",
@@ -51,7 +51,10 @@ const LIBRARIES: [(&str, &[&str]); 20] = [
     ("crc", &["codec/rtu.rs"]),
     ("csv", &["output/csv.rs"]),
     ("env_logger", &["commands/logging.rs"]),
-    ("humantime", &["cli/", "client/", "profile/"]),
+    (
+        "humantime",
+        &["cli/", "client/", "output/profile/", "profile/"],
+    ),
     ("jiff", EVERYWHERE),
     ("log", EVERYWHERE),
     ("postcard", &["build.rs", "profile/builtin.rs"]),
@@ -64,7 +67,12 @@ const LIBRARIES: [(&str, &[&str]); 20] = [
     ("thiserror", EVERYWHERE),
     (
         "toml",
-        &["profile/format.rs", "profile/load.rs", "profile/load/"],
+        &[
+            "profile/advice/",
+            "profile/format.rs",
+            "profile/load.rs",
+            "profile/load/",
+        ],
     ),
     ("uzers", &["transport/serial.rs"]),
     ("wildmatch", &["profile/"]),

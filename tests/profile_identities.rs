@@ -181,4 +181,14 @@ fn a_law_prints_as_a_formula() {
     };
     assert_eq!(sum().to_string(), "total = a + b + c");
     assert_eq!(law.to_string(), "|pf| = |p| / s");
+    let law = Law::LineVoltage {
+        line: name("ab"),
+        phases: [name("a"), name("b")],
+    };
+    assert_eq!(law.to_string(), "ab = √(a² + b² + a × b)");
+    let law = Law::Mean {
+        mean: name("m"),
+        parts: vec![name("a"), name("b")],
+    };
+    assert_eq!(law.to_string(), "m = (a + b) / 2");
 }

@@ -1,5 +1,7 @@
-//! No text makes the loader panic: it loads, or it says in which line it does not.
+//! No text makes the loader panic: it loads, or it says in which line it does not. Advice is about
+//! what loads, and of its lines.
 
+use meterpoll::profile::advice::advise;
 use meterpoll::profile::load::load;
 use proptest::prelude::*;
 
@@ -59,11 +61,17 @@ fn mutated() -> impl Strategy<Value = String> {
 }
 
 fn check(text: &str) -> Result<(), TestCaseError> {
-    if let Err(error) = load("m.toml", text) {
-        let lines = text.matches('\n').count() + 1;
-        prop_assert!((1..=lines).contains(&error.line), "{error}");
+    let lines = 1..=text.matches('\n').count() + 1;
+    let loaded = load("m.toml", text);
+    if let Err(error) = &loaded {
+        prop_assert!(lines.contains(&error.line), "{error}");
         prop_assert!(!error.problem.to_string().is_empty());
     }
+    let advised = advise("m.toml", text).map(|(profile, advice)| {
+        let are_there = advice.iter().all(|advice| lines.contains(&advice.line));
+        (profile, are_there)
+    });
+    prop_assert_eq!(advised, loaded.map(|profile| (profile, true)));
     Ok(())
 }
 

@@ -322,3 +322,9 @@ fn a_row_repeats_twice_at_least_and_within_the_registers_there_are() {
         "m.toml:6: a.address: 2 registers from 0x0018 run past the end of its table of 25",
     );
 }
+
+#[test]
+fn an_empty_unit_is_none() {
+    assert_eq!(good("u16", "unit = \"V\"").unit.as_deref(), Some("V"));
+    assert_eq!(good("u16", "unit = \"\"").unit, None);
+}

@@ -253,3 +253,31 @@ fn a_scale_can_go_by_the_raw_number_itself() {
         assert_eq!(read("mains", &[raw], &[]), Err(Missing::Mismatch), "{raw}");
     }
 }
+
+#[test]
+fn factors_and_scales_print_as_formulas() {
+    let factors = meter().factors.iter().map(ToString::to_string);
+    let factors: Vec<String> = factors.collect();
+    assert_eq!(
+        factors,
+        [
+            "imax = 1.2 × ct",
+            "phases = 3 for raw wiring 1; else 2",
+            "pmax = vmax × imax × phases",
+            "step = 0.001 for raw format 0; 0.01 for raw format 1; 0.1 for raw format 2",
+            "vmax = 660 for raw pt_ratio 10; else vmax_of_ratio",
+            "vmax_of_ratio = 144 × pt_ratio",
+        ]
+    );
+    for (point, expected) in [
+        ("ct", "1"),
+        ("pt_ratio", "0.1"),
+        ("counter", "step"),
+        ("watts", "0..9999 → -pmax..pmax"),
+        ("hertz", "0..9999 → 45..65"),
+        ("mains", "1 at raw 0, 40..70; 0.1 at raw 400..700"),
+    ] {
+        let point = meter().point(point).expect("a point");
+        assert_eq!(point.scaling.to_string(), expected, "{}", point.name);
+    }
+}

@@ -307,6 +307,7 @@ fn a_modicon_number_and_the_other_function_contradict_each_other() {
         numbering: Numbering::Modicon,
         function: Some(ReadFunction::HoldingRegisters),
         profile: None,
+        ..Reading::default()
     };
     let error = select(&["30577".to_owned()], reading).expect_err("a contradiction");
     assert_eq!(

@@ -2,10 +2,17 @@
 
 mod support {
     pub(crate) mod program;
+    #[cfg(unix)]
+    pub(crate) mod pty;
 }
+
+use std::fs;
+use std::path::PathBuf;
 
 use meterpoll::commands::ExitCode;
 use support::program::Program;
+#[cfg(unix)]
+use support::pty::{self, PtyMeter};
 
 const README: &str = include_str!("../README.md");
 
@@ -39,6 +46,7 @@ fn the_two_commands_for_a_fresh_machine_are_there() {
 
 #[test]
 fn every_example_that_needs_no_adapter_runs() {
+    let folder = with_the_profile("examples");
     let mut ran = 0;
     for block in blocks("console") {
         let mut lines = block.lines().peekable();
@@ -52,7 +60,7 @@ fn every_example_that_needs_no_adapter_runs() {
             if command.contains("/dev/") || command == "ports" {
                 continue;
             }
-            let mut program = Program::new("");
+            let mut program = Program::new("").folder(&folder);
             for word in words(command) {
                 program = program.argument(word);
             }
@@ -65,15 +73,57 @@ fn every_example_that_needs_no_adapter_runs() {
             ran += 1;
         }
     }
-    assert_eq!(ran, 5);
+    assert_eq!(ran, 10);
 }
 
 #[test]
-fn the_profile_shown_loads() {
-    let blocks = blocks("toml");
-    let profile = meterpoll::profile::load::load("README.md", blocks[0]).expect("it loads");
-    assert_eq!(profile.name, "mine");
-    assert_eq!(profile.points.len(), 2);
+fn the_profile_shown_loads_and_there_is_nothing_to_say_about_it() {
+    let folder = with_the_profile("checked");
+    let (profile, advice) =
+        meterpoll::profile::advice::advise("mine.toml", blocks("toml")[0]).expect("it loads");
+    assert_eq!(profile.points.len(), 6);
+    assert_eq!(profile.factors.len(), 1);
+    assert_eq!(profile.identities.len(), 1);
+    assert_eq!(advice, []);
+    Program::new("meters check -q mine.toml")
+        .folder(folder)
+        .run();
+}
+
+#[cfg(unix)]
+#[test]
+fn a_meter_is_read_with_the_profile_shown() {
+    let meter = PtyMeter::new(Box::new(|request| {
+        let held = |address| match address {
+            0x0000 => Some(21),
+            0x0010 => Some(2301),
+            0x0011 => Some(0),
+            0x0013 => Some(5002),
+            0x0034 => Some(1),
+            0x0035 => Some(2),
+            0x0100 => Some(200),
+            _ => None,
+        };
+        pty::answer_with(4, request, held).unwrap_or_default()
+    }));
+    let port = meter.path();
+    Program::new(&format!(
+        "read-registers -p {port} -a 4 --meter mine.toml voltage_a frequency @setup energy_* -f csv"
+    ))
+    .folder(with_the_profile("read"))
+    .stdout(
+        "time,meter,unit_id,status,voltage_a,frequency,model,ct_primary,energy_import\n\
+             <time>,mine,4,ok,230.1,50.02,21,200,65538\n",
+    )
+    .run();
+}
+
+/// A folder with the profile shown in it.
+fn with_the_profile(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("readme-{name}"));
+    fs::create_dir_all(&folder).expect("the folder for tests is writable");
+    fs::write(folder.join("mine.toml"), blocks("toml")[0]).expect("the folder is writable");
+    folder
 }
 
 /// The source that describes the keys of a profile.

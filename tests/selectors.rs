@@ -3,7 +3,7 @@
 use meterpoll::codec::RegisterRange;
 use meterpoll::codec::value::{ByteOrder, RegisterType};
 use meterpoll::profile::load::load;
-use meterpoll::profile::selector::{Reading, select};
+use meterpoll::profile::selector::{Purpose, Reading, select};
 use meterpoll::profile::{Point, Profile};
 
 const BENCH_METER: &str = r#"
@@ -232,4 +232,56 @@ fn a_group_without_a_point_that_can_be_read_is_nothing_to_read() {
         error.to_string(),
         "nothing to read: @default has no point that can be read"
     );
+}
+
+/// How points are looked up.
+fn looked_up(profile: &Profile) -> Reading<'_> {
+    Reading {
+        purpose: Purpose::LookUp,
+        ..meter(profile)
+    }
+}
+
+#[test]
+fn points_that_can_only_be_written_are_looked_up_like_the_others() {
+    let profile = bench_meter();
+    for (selectors, expected) in [
+        (vec!["reset"], vec!["reset"]),
+        (vec!["reset*"], vec!["reset", "reset_time"]),
+        (vec!["@energy"], vec!["energy_in", "energy_out", "reset"]),
+    ] {
+        let points = select(&typed(&selectors), looked_up(&profile)).expect("points");
+        let names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
+        assert_eq!(names, expected, "{selectors:?}");
+    }
+}
+
+#[test]
+fn without_selectors_every_point_is_looked_up() {
+    let text = BENCH_METER.replace("groups.default", "groups.other");
+    for text in [BENCH_METER, &text] {
+        let profile = load("bench.toml", text).expect("the profile loads");
+        let found = select(&[], looked_up(&profile));
+        assert_eq!(found.as_ref(), Ok(&profile.points));
+    }
+}
+
+#[test]
+fn a_register_by_address_is_no_point_to_look_up() {
+    let profile = bench_meter();
+    for selector in ["0x0000", "107", "0x11F:u32/CDAB*0.1=kWh", "0x"] {
+        let error = select(&typed(&[selector]), looked_up(&profile)).expect_err("no point");
+        assert_eq!(
+            error.to_string(),
+            format!("'{selector}' is no point of bench")
+        );
+    }
+}
+
+#[test]
+fn a_group_without_members_is_nothing_to_look_up() {
+    let text = BENCH_METER.replace("[\"voltage\", \"current_*\"]", "[]");
+    let profile = load("bench.toml", &text).expect("the profile loads");
+    let error = select(&typed(&["@default"]), looked_up(&profile)).expect_err("nothing");
+    assert_eq!(error.to_string(), "there is no point in @default");
 }

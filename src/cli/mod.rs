@@ -3,6 +3,7 @@
 //! [`Arguments`].
 
 mod line;
+mod meters;
 #[allow(
     rustdoc::broken_intra_doc_links,
     reason = "its doc comments are help texts, where [default: ...] is no link"
@@ -15,6 +16,7 @@ use clap::{ArgAction, Args, Parser, Subcommand};
 use clap_complete::Shell;
 
 pub use line::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
+pub use meters::{CheckMeters, ExportMeter, Meters, MetersCommand, ShowFormat, ShowMeter};
 pub use read_registers::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
 pub use usage::{Usage, completion_script, parse};
 pub use values::Units;
@@ -82,27 +84,12 @@ pub struct Verbosity {
 pub enum Command {
     /// Read points of a meter by name, or raw registers by address
     ReadRegisters(Box<ReadRegisters>),
-    /// List known meters
+    /// List known meters, show one, print its profile, check a profile of your own
     Meters(Meters),
     /// List serial ports, without opening any
     Ports,
     /// Print a shell's completion script
     Completions(Completions),
-}
-
-/// Arguments of `meters`.
-#[derive(Debug, Args)]
-pub struct Meters {
-    /// What to show of them; list when left out
-    #[command(subcommand)]
-    pub command: Option<MetersCommand>,
-}
-
-/// The commands of `meters`.
-#[derive(Debug, Clone, Copy, Subcommand)]
-pub enum MetersCommand {
-    /// List the meters inside the program and your own
-    List,
 }
 
 /// Arguments of `completions`.

@@ -54,7 +54,8 @@ impl FunctionCode {
         self.get() | 0x80
     }
 
-    const fn name(self) -> Option<&'static str> {
+    /// The standard's name, word for word; `None` for a code this crate does not speak.
+    pub const fn name(self) -> Option<&'static str> {
         Some(match self {
             Self::ReadHoldingRegisters => "Read Holding Registers",
             Self::ReadInputRegisters => "Read Input Registers",

@@ -1,41 +1,20 @@
-//! `meters`: what the program knows.
+//! `meters`: what the program knows about meters.
+
+mod check;
+mod export;
+mod list;
+mod show;
 
 use super::report::Report;
-use super::{CommandError, ExitCode, print};
-use crate::output::columns::columns;
-use crate::profile::{Profile, builtin, find};
+use super::{CommandError, ExitCode};
+use crate::cli::{Meters, MetersCommand};
 
-/// Lists the meters that can be named: the user's own, and those inside the program that no own
-/// one replaces. One that does not load is told, and the others are listed all the same.
-pub(super) fn list(report: &mut Report) -> Result<ExitCode, CommandError> {
-    let mut lines: Vec<Vec<String>> = Vec::new();
-    let mut end = ExitCode::Done;
-    for path in find::own_files() {
-        match find::own(&path) {
-            Ok(profile) => lines.push(line(&profile, &path.display().to_string())),
-            Err(error) => end = report.error(&error.into()),
-        }
+/// Does what was asked for with the meters, or lists them.
+pub(super) fn run(arguments: &Meters, report: &mut Report) -> Result<ExitCode, CommandError> {
+    match &arguments.command {
+        None | Some(MetersCommand::List) => list::run(report),
+        Some(MetersCommand::Show(arguments)) => show::run(arguments, report),
+        Some(MetersCommand::Export(arguments)) => export::run(arguments),
+        Some(MetersCommand::Check(arguments)) => check::run(arguments, report),
     }
-    for meter in builtin::all() {
-        if !lines
-            .iter()
-            .any(|line| line.first().is_some_and(|name| name == meter.name))
-        {
-            lines.push(line(&meter.profile(), "built in"));
-        }
-    }
-    lines.sort();
-    let header = ["NAME", "METER", "POINTS", "LINE", "FROM"];
-    print(columns(&header, &[2], lines).as_bytes())?;
-    Ok(end)
-}
-
-fn line(profile: &Profile, from: &str) -> Vec<String> {
-    vec![
-        profile.name.clone(),
-        profile.title.clone(),
-        profile.points.len().to_string(),
-        profile.line.to_string(),
-        from.to_owned(),
-    ]
 }

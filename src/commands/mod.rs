@@ -35,7 +35,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let mut report = Report::new(arguments.verbosity.quiet);
     let result = match arguments.command {
         Command::ReadRegisters(arguments) => read_registers::run(&arguments, &mut report),
-        Command::Meters(_) => meters::list(&mut report),
+        Command::Meters(arguments) => meters::run(&arguments, &mut report),
         Command::Ports => ports::list(&report),
         Command::Completions(arguments) => completions::print_script(&arguments),
     };

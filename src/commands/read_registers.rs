@@ -194,6 +194,7 @@ fn points(
         },
         function: typed_function(arguments),
         profile,
+        ..Reading::default()
     };
     let points = select(&arguments.what, reading)?;
     if let Some(profile) = profile {

@@ -174,12 +174,15 @@ fn select_hint(error: &SelectError) -> Option<String> {
         SelectError::UnknownPoint { near, .. } if !near.is_empty() => return None,
         SelectError::UnknownPoint { groups, .. } | SelectError::NoMatch { groups, .. } => {
             return Some(format!(
-                "groups are {}; '*' reads every point",
+                "groups are {}; '*' is every point",
                 groups.join(", ")
             ));
         }
         SelectError::PointForm { .. } => "type, factor and unit are for registers by address",
         SelectError::FunctionClash { .. } => "leave --function out: 3xxxx is 4, 4xxxx is 3",
+        SelectError::NoPoint { .. } => {
+            "points are named (current_a), matched (current_*) or grouped (@energy)"
+        }
         SelectError::NoMeter { .. } => "name the meter with --meter, or registers as 0x0000+10",
         SelectError::Malformed { .. } => {
             "registers are written 0x006B, 107, 0x6B+3 or 0x11F:u32/CDAB*0.1=kWh"

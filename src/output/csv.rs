@@ -122,6 +122,19 @@ impl<W: Write> Sink for LongCsv<W> {
     }
 }
 
+/// A header and rows of as many cells.
+pub(super) fn records(
+    header: &[&str],
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> io::Result<Vec<u8>> {
+    let mut lines = lines();
+    lines.write_record(header)?;
+    for row in rows {
+        lines.write_record(row)?;
+    }
+    lines.into_inner().map_err(csv::IntoInnerError::into_error)
+}
+
 fn lines() -> Writer<Vec<u8>> {
     WriterBuilder::new()
         .terminator(Terminator::Any(b'\n'))

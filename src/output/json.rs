@@ -1,8 +1,9 @@
 //! JSON: an object a reading, on lines of their own or in one array.
 
+use std::fmt::Display;
 use std::io::{self, Write};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
 use super::{Sink, status, time};
@@ -36,10 +37,27 @@ fn objects(points: &[Point], row: &Row) -> io::Result<Vec<String>> {
                 unit: point.unit.as_deref(),
                 status: status(reading.as_ref().err().copied()),
             };
-            // The one control character that JSON lets pass.
-            Ok(serde_json::to_string(&object)?.replace('\u{7f}', "\\u007f"))
+            line(&object)
         })
         .collect()
+}
+
+/// Anything in one line.
+pub(super) fn line(value: &impl Serialize) -> io::Result<String> {
+    // The one control character that JSON lets pass.
+    Ok(serde_json::to_string(value)?.replace('\u{7f}', "\\u007f"))
+}
+
+/// A number that JSON has digit by digit as it prints.
+pub(super) struct Exact<N>(pub(super) N);
+
+impl<N: Display> Serialize for Exact<N> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let digits = RawValue::from_string(self.0.to_string());
+        digits
+            .map_err(serde::ser::Error::custom)?
+            .serialize(serializer)
+    }
 }
 
 /// A number as its own digits, everything else as a string.

@@ -1,10 +1,12 @@
-//! Readings as people and programs want them.
+//! Readings, and meters, as people and programs want them.
 //!
-//! Every format is a [`Sink`] that takes one [`Row`] after the other. A row goes out in one write.
+//! Every format of readings is a [`Sink`] that takes one [`Row`] after the other. A row goes out in
+//! one write. What a meter's profile says is a [`profile::Shown`].
 
 pub mod columns;
 pub mod csv;
 pub mod json;
+pub mod profile;
 pub mod table;
 
 use std::io;
@@ -41,7 +43,7 @@ pub fn status(fault: Option<Fault>) -> String {
     fault.map_or_else(|| "ok".to_owned(), |fault| fault.to_string())
 }
 
-/// Text from a meter made safe for a terminal: control characters are shown, not sent.
+/// Text from a meter or a file made safe for a terminal: control characters are shown, not sent.
 pub fn escape(text: &str) -> String {
     text.chars()
         .flat_map(|c| {

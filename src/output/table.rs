@@ -8,10 +8,11 @@ use crate::profile::{Point, Value};
 use crate::readings::{Fault, Row};
 
 /// Behind the name of a point whose address or scale was not read in the maker's manual.
-const UNVERIFIED: &str = " *";
+pub(super) const UNVERIFIED: &str = " *";
 
 /// What that mark means.
-const FOOTNOTE: &str = "* not verified: address or scale was not read in the maker's manual";
+pub(super) const FOOTNOTE: &str =
+    "* not verified: address or scale was not read in the maker's manual";
 
 /// A table a meter: a heading, the points with values and units, and what is missing and why.
 pub struct Table<W: Write> {

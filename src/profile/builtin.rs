@@ -12,6 +12,9 @@ use super::packed::Packed;
 pub struct Builtin {
     /// Its name, as typed after `--meter`.
     pub name: &'static str,
+    /// Its TOML file. It stays on disk, as a part of the program that a run does not touch, until
+    /// somebody reads it.
+    pub text: &'static str,
     packed: &'static [u8],
 }
 

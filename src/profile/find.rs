@@ -1,12 +1,13 @@
 //! From what a person types after `--meter` to a profile: a file, one of the user's own, or one
 //! inside the program.
 
+use std::borrow::Cow;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::builtin;
+use super::builtin::{self, Builtin};
 use super::error::ProfileError;
 use super::load;
 use super::model::Profile;
@@ -43,28 +44,70 @@ pub enum FindError {
     Invalid(#[from] ProfileError),
 }
 
-/// Finds a profile. What looks like a path (a separator in it, or `.toml` at its end) is a file;
-/// else the user's own come before the program's.
+/// Where a profile is.
+#[derive(Debug, Clone)]
+pub enum Origin {
+    /// A file, named by its path.
+    File(PathBuf),
+    /// A file of the user's own, found by its name.
+    Own(PathBuf),
+    /// Inside the program.
+    BuiltIn(Builtin),
+}
+
+impl Origin {
+    /// Loads it.
+    ///
+    /// # Errors
+    /// What [`file()`] or [`own`] find.
+    pub fn profile(&self) -> Result<Profile, FindError> {
+        match self {
+            Self::File(path) => file(path),
+            Self::Own(path) => own(path),
+            Self::BuiltIn(meter) => Ok(meter.profile()),
+        }
+    }
+
+    /// The text it is loaded from, right or wrong.
+    ///
+    /// # Errors
+    /// [`FindError::Unreadable`].
+    pub fn text(&self) -> Result<Cow<'static, str>, FindError> {
+        match self {
+            Self::File(path) | Self::Own(path) => text(path).map(Cow::Owned),
+            Self::BuiltIn(meter) => Ok(Cow::Borrowed(meter.text)),
+        }
+    }
+}
+
+/// Finds a profile and loads it.
 ///
 /// # Errors
 /// [`FindError`] tells an unknown name, an unreadable file and a wrong one apart.
 pub fn find(meter: &str) -> Result<Profile, FindError> {
+    origin(meter)?.profile()
+}
+
+/// Finds a profile. What looks like a path (a separator in it, or `.toml` at its end) is a file;
+/// else the user's own come before the program's.
+///
+/// # Errors
+/// [`FindError::Unknown`].
+pub fn origin(meter: &str) -> Result<Origin, FindError> {
     let path = Path::new(meter);
     if meter.contains(std::path::is_separator) || is_toml(path) {
-        return file(path);
+        return Ok(Origin::File(path.to_owned()));
     }
     if let Some(path) = own_folder().map(|folder| folder.join(format!("{meter}.toml")))
         && is_there(&path)
     {
-        return own(&path);
+        return Ok(Origin::Own(path));
     }
-    match builtin::find(meter) {
-        Some(found) => Ok(found.profile()),
-        None => Err(FindError::Unknown {
-            name: meter.to_owned(),
-            known: names(),
-        }),
-    }
+    let built_in = builtin::find(meter).map(Origin::BuiltIn);
+    built_in.ok_or_else(|| FindError::Unknown {
+        name: meter.to_owned(),
+        known: names(),
+    })
 }
 
 /// All meters that can be named: the user's own and the program's, each once, by name.
@@ -112,11 +155,19 @@ pub fn own(path: &Path) -> Result<Profile, FindError> {
 /// # Errors
 /// [`FindError::Unreadable`] or [`FindError::Invalid`].
 pub fn file(path: &Path) -> Result<Profile, FindError> {
-    let name = path.display().to_string();
-    match std::fs::read_to_string(path) {
-        Ok(text) => Ok(load::load(&name, &text)?),
-        Err(source) => Err(FindError::Unreadable { file: name, source }),
-    }
+    let text = text(path)?;
+    Ok(load::load(&path.display().to_string(), &text)?)
+}
+
+/// Reads a profile's file.
+///
+/// # Errors
+/// [`FindError::Unreadable`].
+pub fn text(path: &Path) -> Result<String, FindError> {
+    std::fs::read_to_string(path).map_err(|source| FindError::Unreadable {
+        file: path.display().to_string(),
+        source,
+    })
 }
 
 /// Whether there is anything of that name, a broken link included: an own profile that cannot be

@@ -47,7 +47,7 @@
 //! order = "CDAB"                # ABCD (default), CDAB, BADC, DCBA
 //! scale = 0.1                   # the raw number is multiplied with it; default 1. Also the name of
 //!                               # a factor, or one number or another by where the raw one lies
-//! unit = "V"
+//! unit = "V"                    # "" says that there is none
 //! about = "phase voltage L1-N"
 //! no_value = { high_word = 0x7FFF, means = "overflow" }  # or raw = 65535, means = "absent"
 //! verified = false              # address or scale were not read in the maker's manual
@@ -129,7 +129,7 @@ pub struct ProfileFile {
     pub(super) limits: LimitsTable,
     pub(super) identification: Option<IdentificationTable>,
     #[serde(default)]
-    pub(super) labels: BTreeMap<String, LabelTable>,
+    pub(super) labels: BTreeMap<Spanned<String>, LabelTable>,
     #[serde(default)]
     pub(super) factors: BTreeMap<Spanned<String>, FactorTable>,
     #[serde(default)]

@@ -242,7 +242,9 @@ impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Sum { whole, parts } => write!(f, "{whole} = {}", parts.join(" + ")),
-            Self::Mean { mean, parts } => write!(f, "{mean} = mean of {}", parts.join(", ")),
+            Self::Mean { mean, parts } => {
+                write!(f, "{mean} = ({}) / {}", parts.join(" + "), parts.len())
+            }
             Self::Apparent {
                 apparent,
                 real,
@@ -256,7 +258,7 @@ impl fmt::Display for Law {
             Self::LineVoltage {
                 line,
                 phases: [first, second],
-            } => write!(f, "{line} = √3 × about {first}, {second}"),
+            } => write!(f, "{line} = √({first}² + {second}² + {first} × {second})"),
             Self::Near { point, targets } => {
                 let targets: Vec<String> = targets.iter().map(Decimal::to_string).collect();
                 write!(f, "{point} near {}", targets.join(" or "))

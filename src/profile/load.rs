@@ -27,46 +27,54 @@ use crate::transport::{LineSettings, Parity, StopBits};
 /// # Errors
 /// [`ProfileError`] for the first thing that is wrong.
 pub fn load(file: &str, text: &str) -> Result<Profile, ProfileError> {
-    let source = Source { file, text };
+    let (_, profile) = checked(&Source { file, text })?;
+    Ok(profile)
+}
+
+/// The file with the places of its keys, and the profile it makes.
+pub(super) fn checked(source: &Source<'_>) -> Result<(ProfileFile, Profile), ProfileError> {
     let table: ProfileFile =
-        toml::from_str(text).map_err(|error| syntax::explain(&source, &error))?;
+        toml::from_str(source.text).map_err(|error| syntax::explain(source, &error))?;
     source.name(&table.name, "name")?;
-    let limits = limits(&source, &table.limits)?;
-    let labels = shared_labels(&source, &table.labels)?;
-    let points = points(&source, &table.points, &labels, &limits)?;
-    let factors = scaling::factors(&source, &table.factors, &points)?;
-    scaling::references(&source, &table.points, &points, &factors)?;
-    let identities = identity::identities(&source, &table.identities, &points)?;
-    let groups = groups(&source, &table.groups, &points)?;
+    let limits = limits(source, &table.limits)?;
+    let labels = shared_labels(source, &table.labels)?;
+    let points = points(source, &table.points, &labels, &limits)?;
+    let factors = scaling::factors(source, &table.factors, &points)?;
+    scaling::references(source, &table.points, &points, &factors)?;
+    let identities = identity::identities(source, &table.identities, &points)?;
+    let groups = groups(source, &table.groups, &points)?;
     let identification = table
         .identification
-        .map(|table| identification(&source, table, &points))
+        .as_ref()
+        .map(|table| identification(source, table, &points))
         .transpose()?;
-    Ok(Profile {
-        name: table.name.into_inner(),
-        title: table.title,
-        manual: table.manual,
-        line: line(&source, &table.line)?,
+    let profile = Profile {
+        name: table.name.as_ref().clone(),
+        title: table.title.clone(),
+        manual: table.manual.clone(),
+        line: line(source, &table.line)?,
         limits,
         identification,
         groups,
         factors,
         points,
         identities,
-    })
+    };
+    Ok((table, profile))
 }
 
 /// The longest time a profile can give; sums of a few such stay far from any limit.
 const LONGEST_TIME: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// The text being loaded: turns places in it into errors.
-struct Source<'a> {
-    file: &'a str,
-    text: &'a str,
+pub(super) struct Source<'a> {
+    pub(super) file: &'a str,
+    pub(super) text: &'a str,
 }
 
 impl Source<'_> {
-    fn line_of(&self, offset: usize) -> usize {
+    /// The line of a place in the text, from 1.
+    pub(super) fn line_of(&self, offset: usize) -> usize {
         let bytes = self.text.bytes().take(offset);
         bytes.filter(|byte| *byte == b'\n').count() + 1
     }
@@ -289,9 +297,10 @@ type SharedLabels = BTreeMap<String, Arc<Names>>;
 /// All of them, used or not.
 fn shared_labels(
     source: &Source<'_>,
-    tables: &BTreeMap<String, LabelTable>,
+    tables: &BTreeMap<Spanned<String>, LabelTable>,
 ) -> Result<SharedLabels, ProfileError> {
     let tables = tables.iter().map(|(name, table)| {
+        let name = name.as_ref();
         let names = point::label_names(source, table, &format!("labels.{name}"))?;
         Ok((name.clone(), Arc::new(names)))
     });
@@ -305,12 +314,13 @@ fn points(
     labels: &SharedLabels,
     limits: &Limits,
 ) -> Result<Vec<Point>, ProfileError> {
-    let mut lines: BTreeMap<String, usize> = BTreeMap::new();
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
     let mut points: Vec<(Point, Range<usize>)> = Vec::with_capacity(rows.len());
     for row in rows {
-        let line = source.line_of(row.name.span().start);
+        let place = row.name.span().start;
         for point in point::row(source, row, labels, limits)? {
-            if let Some(first) = lines.insert(point.name.clone(), line) {
+            if let Some(first) = places.insert(point.name.clone(), place) {
+                let first = source.line_of(first);
                 let problem = Problem::DuplicateName { first };
                 return Err(source.error(row.name.span(), format!("{}.name", point.name), problem));
             }
@@ -393,7 +403,7 @@ fn groups(
 
 fn identification(
     source: &Source<'_>,
-    table: IdentificationTable,
+    table: &IdentificationTable,
     points: &[Point],
 ) -> Result<Identification, ProfileError> {
     let (name, key) = (table.point.as_ref(), "identification.point");
@@ -411,7 +421,7 @@ fn identification(
         return Err(source.value(&table.codes, "identification.codes", "a list of codes"));
     }
     Ok(Identification {
-        point: table.point.into_inner(),
-        codes: table.codes.into_inner(),
+        point: table.point.as_ref().clone(),
+        codes: table.codes.as_ref().clone(),
     })
 }

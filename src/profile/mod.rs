@@ -2,6 +2,7 @@
 //!
 //! * [`model`] and [`point`]: the checked form that everything else works with.
 //! * [`format`](mod@format) and [`load`]: the TOML file and its strict loader.
+//! * [`advice`]: what a profile that loads may lack all the same.
 //! * [`scaling`] and [`setup`]: scales, and the setup registers that some of them follow from.
 //! * [`identity`]: what must hold between the values of a meter.
 //! * [`packed`]: how a profile lies in the program.
@@ -10,6 +11,7 @@
 //! * [`plan`]: which requests fetch a set of points in the least time on this line.
 //! * [`value`]: what a point's registers mean.
 
+pub mod advice;
 pub mod builtin;
 pub mod error;
 pub mod find;

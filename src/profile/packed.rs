@@ -11,8 +11,15 @@ use super::point::{Labels, Names};
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Packed {
     profile: Profile,
-    tables: Vec<Names>,
+    tables: Vec<PackedTable>,
     labels: Vec<PackedLabels>,
+}
+
+/// Names, and what their table is called where points share it.
+#[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct PackedTable {
+    name: Option<String>,
+    names: Names,
 }
 
 /// The labels of one point, by indices.
@@ -26,7 +33,7 @@ struct PackedLabels {
 impl Packed {
     /// Takes the labels out of a profile.
     pub fn pack(profile: Profile) -> Self {
-        let mut tables: Vec<Names> = Vec::new();
+        let mut tables: Vec<PackedTable> = Vec::new();
         let mut labels = Vec::new();
         for (point, found) in profile.points.iter().enumerate() {
             let (names, are_bits) = match &found.labels {
@@ -34,9 +41,13 @@ impl Packed {
                 Labels::Codes(names) => (names, false),
                 Labels::Bits(names) => (names, true),
             };
-            let known = tables.iter().position(|table| table == names.as_ref());
+            let found = PackedTable {
+                name: found.label_table.as_deref().map(str::to_owned),
+                names: names.as_ref().clone(),
+            };
+            let known = tables.iter().position(|table| *table == found);
             let table = known.unwrap_or_else(|| {
-                tables.push(names.as_ref().clone());
+                tables.push(found);
                 tables.len() - 1
             });
             labels.push(PackedLabels {
@@ -59,15 +70,19 @@ impl Packed {
             tables,
             labels,
         } = self;
-        let tables: Vec<Arc<Names>> = tables.into_iter().map(Arc::new).collect();
+        let tables: Vec<(Option<Arc<str>>, Arc<Names>)> = tables
+            .into_iter()
+            .map(|table| (table.name.map(Arc::from), Arc::new(table.names)))
+            .collect();
         for label in labels {
-            if let (Some(point), Some(table)) =
+            if let (Some(point), Some((name, names))) =
                 (profile.points.get_mut(label.point), tables.get(label.table))
             {
+                point.label_table.clone_from(name);
                 point.labels = if label.are_bits {
-                    Labels::Bits(Arc::clone(table))
+                    Labels::Bits(Arc::clone(names))
                 } else {
-                    Labels::Codes(Arc::clone(table))
+                    Labels::Codes(Arc::clone(names))
                 };
             }
         }

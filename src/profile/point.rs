@@ -37,6 +37,9 @@ pub struct Point {
     /// Names of codes or of bits.
     #[serde(skip)]
     pub labels: Labels,
+    /// The name of the table they stand in, where points share one.
+    #[serde(skip)]
+    pub label_table: Option<Arc<str>>,
     /// What the meter stores in place of a value it does not have.
     pub no_value: Option<NoValue>,
     /// The setup it means anything with; `None` when it always does.
@@ -127,6 +130,7 @@ impl Point {
             access: Access::Read,
             limits: None,
             labels: Labels::None,
+            label_table: None,
             no_value: None,
             only_with: None,
             alone: false,

@@ -2,6 +2,7 @@
 //! meters measure in parts of a full scale that follows from their wiring and their transformers.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use rust_decimal::{Decimal, RoundingStrategy};
 use serde::{Deserialize, Serialize};
@@ -116,6 +117,96 @@ impl Scaling {
             Self::TimesFactor(name) => vec![name],
             Self::Span { low, high, .. } => {
                 [low, high].into_iter().filter_map(Operand::name).collect()
+            }
+        }
+    }
+}
+
+impl fmt::Display for Scaling {
+    /// `0.1`, `ct_ratio`, `1 at raw 40..70; 0.1 at raw 0, 400..700`, `0..9999 → -pmax..pmax`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Times(scale) => scale.fmt(f),
+            Self::TimesFactor(name) => f.write_str(name),
+            Self::TimesByRaw(bands) => {
+                let raw = bands.iter().map(|band| (raw(band), &band.factor));
+                f.write_str(&by_result(raw, "at raw"))
+            }
+            Self::Span { full, low, high } => write!(f, "0..{full} → {low}..{high}"),
+        }
+    }
+}
+
+/// The raw numbers of a band.
+fn raw(band: &Band) -> String {
+    let Band {
+        lowest, highest, ..
+    } = band;
+    if lowest == highest {
+        lowest.to_string()
+    } else {
+        format!("{lowest}..{highest}")
+    }
+}
+
+/// Cases that have one result together: `3 for raw wiring 1, 4; 2 for raw wiring 0`.
+fn by_result<T: PartialEq + fmt::Display>(
+    cases: impl Iterator<Item = (String, T)>,
+    condition: &str,
+) -> String {
+    let mut results: Vec<(T, Vec<String>)> = Vec::new();
+    for (case, result) in cases {
+        match results.iter_mut().find(|(known, _)| *known == result) {
+            Some((_, cases)) => cases.push(case),
+            None => results.push((result, vec![case])),
+        }
+    }
+    let results = results.iter();
+    let texts: Vec<String> = results
+        .map(|(result, cases)| format!("{result} {condition} {}", cases.join(", ")))
+        .collect();
+    texts.join("; ")
+}
+
+impl fmt::Display for Operand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Named { name, negative } => {
+                write!(f, "{}{name}", ["", "-"][usize::from(*negative)])
+            }
+        }
+    }
+}
+
+impl fmt::Display for Factor {
+    /// As a formula: `imax = 1.2 × ct_primary`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}", self.name, self.rule)
+    }
+}
+
+impl fmt::Display for Rule {
+    /// `1.2 × ct_primary`; `3 for raw wiring 1, 4; 2 for raw wiring 0; else 1`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Product(operands) => {
+                let operands: Vec<String> = operands.iter().map(Operand::to_string).collect();
+                f.write_str(&operands.join(" × "))
+            }
+            Self::Choice {
+                by,
+                cases,
+                otherwise,
+            } => {
+                let cases = cases
+                    .iter()
+                    .map(|(code, result)| (code.to_string(), result));
+                f.write_str(&by_result(cases, &format!("for raw {by}")))?;
+                match otherwise {
+                    None => Ok(()),
+                    Some(result) => write!(f, "; else {result}"),
+                }
             }
         }
     }

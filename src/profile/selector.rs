@@ -22,6 +22,17 @@ pub enum Numbering {
     Modicon,
 }
 
+/// What points are chosen for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Purpose {
+    /// To be read: registers by address can be named as well, and points that can only be written
+    /// are left out.
+    #[default]
+    Read,
+    /// To be looked up: any point of the meter, and nothing else.
+    LookUp,
+}
+
 /// Why a selection is not one.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum SelectError {
@@ -99,6 +110,14 @@ pub enum SelectError {
         /// The point.
         name: String,
     },
+    /// A register by address, where points are looked up.
+    #[error("'{selector}' is no point of {meter}")]
+    NoPoint {
+        /// What was typed.
+        selector: String,
+        /// The meter.
+        meter: String,
+    },
     /// A point or group, but no meter.
     #[error("'{selector}' is no register, and without a meter there are no points")]
     NoMeter {
@@ -110,6 +129,12 @@ pub enum SelectError {
     Nothing {
         /// Why not.
         reason: String,
+    },
+    /// Groups without members, where points are looked up.
+    #[error("there is no point in {selectors}")]
+    Empty {
+        /// What was typed.
+        selectors: String,
     },
 }
 
@@ -140,16 +165,29 @@ pub struct Reading<'a> {
     pub function: Option<ReadFunction>,
     /// The meter whose points can be named.
     pub profile: Option<&'a Profile>,
+    /// What the points are for.
+    pub purpose: Purpose,
 }
 
-/// The points that `selectors` choose, in their order, each once.
+impl Reading<'_> {
+    /// Whether a point can be chosen.
+    fn takes(&self, point: &Point) -> bool {
+        self.purpose == Purpose::LookUp || point.access.readable()
+    }
+}
+
+/// The points that `selectors` choose, in their order, each once. Without any, those of the default
+/// group are read, and all are looked up.
 ///
 /// # Errors
 /// [`SelectError`] for the first selector that chooses nothing.
 pub fn select(selectors: &[String], reading: Reading<'_>) -> Result<Vec<Point>, SelectError> {
-    let default = [format!("@{}", Profile::DEFAULT_GROUP)];
+    let default = match reading.purpose {
+        Purpose::Read => [format!("@{}", Profile::DEFAULT_GROUP)],
+        Purpose::LookUp => ["*".to_owned()],
+    };
     let selectors = if selectors.is_empty() {
-        is_default_there(reading.profile)?;
+        is_default_there(reading)?;
         &default
     } else {
         selectors
@@ -166,16 +204,24 @@ pub fn select(selectors: &[String], reading: Reading<'_>) -> Result<Vec<Point>, 
         }
     }
     if points.is_empty() {
-        let reason = format!("{} has no point that can be read", selectors.join(" "));
-        return Err(SelectError::Nothing { reason });
+        let selectors = selectors.join(" ");
+        return Err(match reading.purpose {
+            Purpose::Read => SelectError::Nothing {
+                reason: format!("{selectors} has no point that can be read"),
+            },
+            Purpose::LookUp => SelectError::Empty { selectors },
+        });
     }
     Ok(points)
 }
 
-fn is_default_there(profile: Option<&Profile>) -> Result<(), SelectError> {
-    let reason = match profile {
+fn is_default_there(reading: Reading<'_>) -> Result<(), SelectError> {
+    let reason = match reading.profile {
         None => "name registers such as 0x0000+10, or a meter with --meter".to_owned(),
-        Some(profile) if profile.group(Profile::DEFAULT_GROUP).is_none() => {
+        Some(profile)
+            if reading.purpose == Purpose::Read
+                && profile.group(Profile::DEFAULT_GROUP).is_none() =>
+        {
             format!("{} has no group @default, so name points", profile.name)
         }
         Some(_) => return Ok(()),
@@ -185,7 +231,13 @@ fn is_default_there(profile: Option<&Profile>) -> Result<(), SelectError> {
 
 fn one(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> {
     if selector.starts_with(|first: char| first.is_ascii_digit()) {
-        return raw::registers(selector, reading);
+        return match (reading.purpose, reading.profile) {
+            (Purpose::LookUp, Some(profile)) => Err(SelectError::NoPoint {
+                selector: selector.to_owned(),
+                meter: profile.name.clone(),
+            }),
+            _ => raw::registers(selector, reading),
+        };
     }
     let Some(profile) = reading.profile else {
         return Err(SelectError::NoMeter {
@@ -202,7 +254,7 @@ fn one(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> 
             });
         };
         return Ok(group
-            .filter(|point| point.access.readable())
+            .filter(|point| reading.takes(point))
             .cloned()
             .collect());
     }
@@ -211,7 +263,7 @@ fn one(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> 
         let matches: Vec<Point> = profile
             .points
             .iter()
-            .filter(|point| point.access.readable() && glob.matches(&point.name))
+            .filter(|point| reading.takes(point) && glob.matches(&point.name))
             .cloned()
             .collect();
         if matches.is_empty() {
@@ -226,7 +278,7 @@ fn one(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> 
         return Ok(matches);
     }
     match profile.point(selector) {
-        Some(point) if point.access.readable() => Ok(vec![point.clone()]),
+        Some(point) if reading.takes(point) => Ok(vec![point.clone()]),
         Some(point) => Err(SelectError::WriteOnly {
             name: point.name.clone(),
         }),

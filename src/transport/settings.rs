@@ -17,6 +17,17 @@ pub enum Parity {
     Odd,
 }
 
+impl fmt::Display for Parity {
+    /// `none`, `even`, `odd`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::None => "none",
+            Self::Even => "even",
+            Self::Odd => "odd",
+        })
+    }
+}
+
 /// Stop bits of each character.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum StopBits {
@@ -25,6 +36,16 @@ pub enum StopBits {
     One,
     /// Two.
     Two,
+}
+
+impl StopBits {
+    /// How many.
+    pub const fn count(self) -> u8 {
+        match self {
+            Self::One => 1,
+            Self::Two => 2,
+        }
+    }
 }
 
 /// Speed and character format of a serial line; eight data bits always, as RTU demands (SL 2.5.1).
@@ -92,11 +113,7 @@ impl fmt::Display for LineSettings {
             Parity::Even => 'E',
             Parity::Odd => 'O',
         };
-        let stop = match self.stop_bits {
-            StopBits::One => 1,
-            StopBits::Two => 2,
-        };
-        write!(f, "{} 8{parity}{stop}", self.baud)
+        write!(f, "{} 8{parity}{}", self.baud, self.stop_bits.count())
     }
 }
 

@@ -13,6 +13,7 @@ use std::process::{Command, Output, Stdio};
 pub(crate) struct Program {
     arguments: Vec<OsString>,
     variables: Vec<(&'static str, OsString)>,
+    folder: Option<PathBuf>,
     stdout: String,
     stderr: String,
     code: i32,
@@ -25,6 +26,7 @@ impl Program {
             arguments: arguments.split_whitespace().map(OsString::from).collect(),
             // A configuration folder of the person who runs the tests must not matter.
             variables: vec![("XDG_CONFIG_HOME", "/nonexistent".into())],
+            folder: None,
             stdout: String::new(),
             stderr: String::new(),
             code: 0,
@@ -37,9 +39,22 @@ impl Program {
         self
     }
 
+    /// More arguments, split at spaces.
+    pub(crate) fn arguments(mut self, arguments: &str) -> Self {
+        let arguments = arguments.split_whitespace().map(OsString::from);
+        self.arguments.extend(arguments);
+        self
+    }
+
     /// An environment variable.
     pub(crate) fn variable(mut self, name: &'static str, value: impl Into<OsString>) -> Self {
         self.variables.push((name, value.into()));
+        self
+    }
+
+    /// The folder it runs in, in place of the package's own.
+    pub(crate) fn folder(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.folder = Some(folder.into());
         self
     }
 
@@ -69,6 +84,9 @@ impl Program {
             .env_remove("METERPOLL_PORT")
             .envs(self.variables.iter().map(|(name, value)| (name, value)))
             .stdin(Stdio::null());
+        if let Some(folder) = &self.folder {
+            command.current_dir(folder);
+        }
         command
     }
 

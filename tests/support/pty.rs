@@ -121,21 +121,35 @@ pub(crate) fn register(address: u16) -> u16 {
 
 /// How a healthy meter at `unit` answers; nothing when it is not meant.
 pub(crate) fn answer(unit: u16, request: &[u8]) -> Option<Vec<u8>> {
+    let held = |address| (address < 0x400).then(|| register(address));
+    answer_with(unit, request, held)
+}
+
+/// How a meter at `unit` answers that has these registers; nothing when it is not meant.
+pub(crate) fn answer_with(
+    unit: u16,
+    request: &[u8],
+    held: impl Fn(u16) -> Option<u16>,
+) -> Option<Vec<u8>> {
     let unit = Unit::new(unit, UnitRange::Extended).expect("a unit");
     let (destination, request) = rtu::decode_request(request).ok()?;
     if destination != Destination::Unit(unit) {
         return None;
     }
-    let reply = match request {
-        Request::Read { function, range } if range.end() <= 0x400 => {
+    let values = match request {
+        Request::Read { range, .. } => {
             let first = range.start().get();
-            Reply::Normal(Response::Registers {
-                function,
-                values: ReadValues::new((first..first + range.count()).map(register).collect())
-                    .expect("as many as were asked for"),
-            })
+            let last = first + (range.count() - 1);
+            (first..=last).map(held).collect::<Option<Vec<u16>>>()
         }
-        other => Reply::Exception {
+        _ => None,
+    };
+    let reply = match (request, values) {
+        (Request::Read { function, .. }, Some(values)) => Reply::Normal(Response::Registers {
+            function,
+            values: ReadValues::new(values).expect("as many as were asked for"),
+        }),
+        (other, _) => Reply::Exception {
             function: other.function(),
             code: ExceptionCode::ILLEGAL_DATA_ADDRESS,
         },

@@ -69,7 +69,7 @@ fn point(
         kind,
         order,
         scaling,
-        unit: row.unit.clone(),
+        unit: row.unit.clone().filter(|unit| !unit.is_empty()),
         access: access(source, row.access.as_ref(), &key("access"))?,
         limits: row
             .range
@@ -77,6 +77,10 @@ fn point(
             .map(|range| writable(source, range, kind, &key("range")))
             .transpose()?,
         labels,
+        label_table: match row.labels.as_ref().map(Spanned::as_ref) {
+            Some(LabelsKey::Shared(name)) => Some(name.as_str().into()),
+            _ => None,
+        },
         no_value: row
             .no_value
             .as_ref()

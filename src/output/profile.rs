@@ -1,0 +1,90 @@
+//! A meter as people and programs want it: what its profile says, and its points.
+
+mod card;
+mod csv;
+mod head;
+mod json;
+mod legend;
+mod listing;
+mod sheet;
+mod terms;
+
+use std::io;
+
+use legend::Legend;
+
+use super::escape;
+use crate::profile::{Point, Profile};
+
+/// A meter and those of its points that are shown.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown<'a> {
+    /// The meter.
+    pub profile: &'a Profile,
+    /// The points, in the order they are shown.
+    pub points: &'a [Point],
+}
+
+/// How much of it people see.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Extent {
+    /// The meter with its line, limits, groups and formulas, and a table of the points.
+    Whole,
+    /// The points: one with all there is to say about it, more in a table.
+    Points,
+    /// The points in a table, without heading and footnotes.
+    Bare,
+}
+
+impl Shown<'_> {
+    /// For people.
+    pub fn text(&self, extent: Extent) -> String {
+        let Self { profile, points } = *self;
+        let legend = Legend::of(points);
+        let mut parts = vec![listing::table(points, &legend)];
+        match (extent, points) {
+            (Extent::Whole, _) => parts.insert(0, head::head(profile)),
+            (Extent::Points, [point]) => return card::card(profile, point),
+            (Extent::Points, _) => {
+                parts.insert(0, format!("{}: {}\n", profile.name, escape(&profile.title)));
+                parts.extend(listing::formulas(profile, points));
+            }
+            (Extent::Bare, _) => {}
+        }
+        parts.extend(listing::scales(points));
+        parts.extend(legend.text());
+        if extent != Extent::Bare {
+            parts.extend(listing::footnote(points));
+        }
+        parts.join("\n")
+    }
+
+    /// CSV: a header that is always the same, a row a point. On a terminal control characters are
+    /// shown, not sent.
+    ///
+    /// # Errors
+    /// None that a write to memory does not have.
+    pub fn csv(&self, terminal: bool) -> io::Result<Vec<u8>> {
+        csv::csv(self.points, terminal)
+    }
+
+    /// One JSON object, its keys those of a profile's file; of the points those that are shown.
+    ///
+    /// # Errors
+    /// None that a write to memory does not have.
+    pub fn json(&self) -> io::Result<String> {
+        json::json(self.profile, self.points)
+    }
+}
+
+/// How many points there are, and how many of them are not verified.
+pub fn count(points: &[Point]) -> String {
+    let all = match points.len() {
+        1 => "1 point".to_owned(),
+        count => format!("{count} points"),
+    };
+    match points.iter().filter(|point| !point.verified).count() {
+        0 => format!("{all}, all verified"),
+        unverified => format!("{all}, {unverified} not verified"),
+    }
+}

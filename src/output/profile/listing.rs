@@ -1,0 +1,125 @@
+//! Points in a table.
+
+use super::legend::Legend;
+use super::sheet::Sheet;
+use super::terms;
+use crate::output::columns::columns;
+use crate::output::escape;
+use crate::output::table::{FOOTNOTE, UNVERIFIED};
+use crate::profile::point::Access;
+use crate::profile::scaling::Scaling;
+use crate::profile::{Point, Profile};
+
+/// What a column has for a point.
+type Cell<'a> = &'a dyn Fn(&Point) -> String;
+
+/// A line a point. Columns that would be empty are left out.
+pub(super) fn table(points: &[Point], legend: &Legend<'_>) -> String {
+    let all: [(&str, Cell<'_>); 9] = [
+        ("ADDRESS", &registers),
+        ("NAME", &name),
+        ("TYPE", &kind),
+        ("SCALE", &scale),
+        ("UNIT", &unit),
+        ("FUNCTION", &function),
+        ("ACCESS", &access),
+        ("PAGE", &page),
+        ("LABELS", &|point| legend.cell(point)),
+    ];
+    let mut header = Vec::new();
+    let mut lines = vec![Vec::new(); points.len()];
+    for (name, cell) in all {
+        let cells: Vec<String> = points.iter().map(|point| escape(&cell(point))).collect();
+        if cells.iter().any(|cell| !cell.is_empty()) {
+            header.push(name);
+            lines
+                .iter_mut()
+                .zip(cells)
+                .for_each(|(line, cell)| line.push(cell));
+        }
+    }
+    columns(&header, &[], lines)
+}
+
+/// `0x0240`, or `0x0240+2` where it takes two registers: as they are typed to be read.
+fn registers(point: &Point) -> String {
+    match point.range.count() {
+        1 => point.range.start().to_string(),
+        _ => point.range.to_string(),
+    }
+}
+
+fn name(point: &Point) -> String {
+    let mark = if point.verified { "" } else { UNVERIFIED };
+    format!("{}{mark}", point.name)
+}
+
+fn kind(point: &Point) -> String {
+    let order = terms::unusual_order(point);
+    let order = order.map(|order| format!(" {order}"));
+    format!("{}{}", point.kind, order.unwrap_or_default())
+}
+
+/// Of more than one factor only that there are: they stand below.
+fn scale(point: &Point) -> String {
+    match point.scaling {
+        Scaling::TimesByRaw(_) => "by raw number".to_owned(),
+        _ => terms::scale(point).unwrap_or_default(),
+    }
+}
+
+fn unit(point: &Point) -> String {
+    point.unit.clone().unwrap_or_default()
+}
+
+fn function(point: &Point) -> String {
+    let code = terms::function(point);
+    code.map_or_else(String::new, |code| format!("{code:02}"))
+}
+
+/// What can be done with it, and the raw numbers that may be written; nothing for what is only
+/// read, as most points are.
+fn access(point: &Point) -> String {
+    let access = match point.access {
+        Access::Read => return String::new(),
+        Access::Write => "w",
+        Access::ReadWrite => "rw",
+    };
+    let Some((lowest, highest)) = point.limits else {
+        return access.to_owned();
+    };
+    let [low, high] = [lowest, highest].map(|number| terms::raw(point, number));
+    if low == high {
+        format!("{access} {low}")
+    } else {
+        format!("{access} {low}..{high}")
+    }
+}
+
+fn page(point: &Point) -> String {
+    point.page.clone()
+}
+
+/// The scales that go by the raw number.
+pub(super) fn scales(points: &[Point]) -> Option<String> {
+    let mut sheet = Sheet::default();
+    let long = points
+        .iter()
+        .filter(|point| matches!(point.scaling, Scaling::TimesByRaw(_)));
+    for point in long.clone() {
+        sheet.text(&point.name, &point.scaling.to_string());
+    }
+    (long.count() > 0).then(|| sheet.to_string())
+}
+
+/// The factors that scales in the table name.
+pub(super) fn formulas(profile: &Profile, points: &[Point]) -> Option<String> {
+    let formulas = terms::formulas(profile, points);
+    (!formulas.is_empty()).then(|| formulas.join("\n") + "\n")
+}
+
+/// What the mark behind some names means.
+pub(super) fn footnote(points: &[Point]) -> Option<String> {
+    let is_marked = points.iter().any(|point| !point.verified);
+    is_marked.then(|| format!("{FOOTNOTE}\n"))
+}
