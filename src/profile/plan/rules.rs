@@ -67,11 +67,6 @@ impl Rules {
         }
     }
 
-    /// The most registers in one read.
-    pub const fn most(&self) -> u16 {
-        self.most
-    }
-
     /// Whether a read may cover registers that none of its points names.
     pub const fn may_cross_holes(&self) -> bool {
         self.may_cross_holes
