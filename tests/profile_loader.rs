@@ -34,8 +34,8 @@ fn refused(text: &str, message: &str) {
     }
 }
 
-const POINT_KEYS: &str = "name, address, type, order, scale, unit, about, access, range, labels, \
-                          no_value, alone, function, verified, page";
+const POINT_KEYS: &str = "name, address, repeat, type, order, scale, span, unit, about, access, range, \
+                          labels, no_value, only_with, alone, function, verified, page";
 
 #[test]
 fn a_small_profile_loads() {
@@ -49,7 +49,7 @@ fn an_unknown_key_is_named_with_the_keys_that_are_known() {
     refused(
         &with("colour = \"red\""),
         "m.toml:4: colour: unknown key, expected name, title, manual, line, limits, \
-         identification, labels, groups, points",
+         identification, labels, factors, groups, points, identities",
     );
     let limits = "unknown key, expected highest_unit, functions, interchangeable_reads, \
                   broadcast_functions, read_registers, write_registers, read_holes, \
@@ -119,7 +119,7 @@ fn a_value_of_the_wrong_kind_is_shown_with_what_is_expected() {
     );
     refused(
         &point("u16", "scale = \"0.1\""),
-        "m.toml:8: a.scale: \"0.1\" is not a number",
+        "m.toml:8: a.scale: \"0.1\" is not a number, without quotes, or a name",
     );
     refused(
         &point("u16", "labels = 3"),

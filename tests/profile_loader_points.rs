@@ -106,7 +106,7 @@ fn a_scale_has_the_decimals_it_is_written_with() {
         ("0.000277777777777778", "0.000277777777777778"),
     ] {
         let point = good("u16", &format!("scale = {scale}"));
-        assert_eq!(point.scale.to_string(), kept);
+        assert_eq!(point.constant_scale().expect("a number").to_string(), kept);
     }
 }
 
@@ -218,21 +218,12 @@ fn a_label_is_of_a_code_that_one_register_holds() {
 }
 
 #[test]
-fn a_point_with_labels_has_no_scale() {
-    refused(
-        "u16",
-        "labels = { 1 = \"on\" }\nscale = 0.1",
-        "m.toml:9: a.scale: a point with labels has no scale",
-    );
-}
-
-#[test]
 fn only_one_register_has_labels() {
-    for kind in ["u32", "i16", "f32", "ascii/2", "date", "letter"] {
+    for kind in ["u32", "u64", "f32", "ascii/2", "date", "letter"] {
         refused(
             kind,
             "labels = { 1 = \"on\" }",
-            "m.toml:8: a.labels: only u16, hex and bits have labels",
+            "m.toml:8: a.labels: only u16, i16, hex and bits have labels",
         );
     }
 }
@@ -303,4 +294,31 @@ fn a_point_is_read_only_verified_and_unscaled_unless_said_otherwise() {
         ..Point::raw(found.range, found.kind, found.order)
     };
     assert_eq!(found, expected);
+}
+
+#[test]
+fn a_row_that_repeats_is_as_many_points_one_behind_the_other() {
+    let loaded = load("m.toml", &profile("u32", "repeat = 3"));
+    let points = loaded.unwrap_or_else(|error| panic!("{error}")).points;
+    let places: Vec<String> = points
+        .iter()
+        .map(|point| format!("{} {}", point.name, point.range))
+        .collect();
+    assert_eq!(places, ["a_1 0x0010+2", "a_2 0x0012+2", "a_3 0x0014+2"]);
+}
+
+#[test]
+fn a_row_repeats_twice_at_least_and_within_the_registers_there_are() {
+    for count in [0, 1, 0x7FF8] {
+        refused(
+            "u32",
+            &format!("repeat = {count}"),
+            &format!("m.toml:8: a.repeat: {count} is not 2 to 32759, as many as lie below 0xFFFF"),
+        );
+    }
+    refused(
+        "u32",
+        "repeat = 9\n[limits]\ntable_registers = 25",
+        "m.toml:6: a.address: 2 registers from 0x0018 run past the end of its table of 25",
+    );
 }

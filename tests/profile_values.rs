@@ -1,7 +1,7 @@
 //! What registers mean, through the points of small profiles.
 
 use meterpoll::profile::load::load;
-use meterpoll::profile::{Missing, Point, Value};
+use meterpoll::profile::{Missing, Point, Scales, Value};
 
 /// The one point of a profile, with these keys after its address.
 #[track_caller]
@@ -17,7 +17,7 @@ fn point(keys: &str) -> Point {
 /// What the registers read as, as it is printed.
 #[track_caller]
 fn shown(keys: &str, registers: &[u16]) -> String {
-    match point(keys).interpret(registers) {
+    match point(keys).interpret(registers, Scales::none()) {
         Ok(value) => value.to_string(),
         Err(missing) => panic!("{keys}: {missing:?}"),
     }
@@ -25,7 +25,7 @@ fn shown(keys: &str, registers: &[u16]) -> String {
 
 #[track_caller]
 fn missing(keys: &str, registers: &[u16]) -> Missing {
-    match point(keys).interpret(registers) {
+    match point(keys).interpret(registers, Scales::none()) {
         Ok(value) => panic!("{keys}: {value}"),
         Err(missing) => missing,
     }
@@ -313,12 +313,12 @@ fn a_float_is_scaled_from_the_digits_it_prints() {
 #[test]
 fn a_float_beyond_what_decimals_hold_is_scaled_all_the_same() {
     let keys = "type = \"f64\"\nscale = 0.5";
-    let value = point(keys).interpret(&words(1e300_f64.to_bits()));
+    let value = point(keys).interpret(&words(1e300_f64.to_bits()), Scales::none());
     assert_eq!(value, Ok(Value::Double(5e299)));
-    let value = point(keys).interpret(&words(1e-300_f64.to_bits()));
+    let value = point(keys).interpret(&words(1e-300_f64.to_bits()), Scales::none());
     assert_eq!(value, Ok(Value::Double(5e-301)));
     let keys = "type = \"f64\"\nscale = 1e-15";
-    let value = point(keys).interpret(&words(1e-20_f64.to_bits()));
+    let value = point(keys).interpret(&words(1e-20_f64.to_bits()), Scales::none());
     assert_eq!(value, Ok(Value::Double(1e-20 * 1e-15)));
 }
 
@@ -347,7 +347,7 @@ fn too_few_or_too_many_registers_are_no_value() {
 #[test]
 fn only_numbers_say_that_they_are() {
     let is_number = |keys, registers: &[u16]| {
-        let value = point(keys).interpret(registers);
+        let value = point(keys).interpret(registers, Scales::none());
         value.is_ok_and(|value| value.is_number())
     };
     assert!(is_number("type = \"u16\"", &[1]));
@@ -357,4 +357,19 @@ fn only_numbers_say_that_they_are() {
     assert!(!is_number("type = \"ascii/2\"", &[0x3132]));
     assert!(!is_number("type = \"time\"", &[0, 0]));
     assert!(!is_number("type = \"u16\"\nlabels = { 1 = \"on\" }", &[1]));
+}
+
+#[test]
+fn a_code_with_a_name_shows_as_it_and_any_other_as_the_scaled_number() {
+    let keys = "type = \"u16\"\nscale = 0.1\nlabels = { 1201 = \"off\" }";
+    assert_eq!(shown(keys, &[1201]), "off");
+    assert_eq!(shown(keys, &[1200]), "120.0");
+}
+
+#[test]
+fn names_of_signed_codes_go_by_the_register() {
+    let keys = "type = \"i16\"\nlabels = { 0 = \"L1-L2-L3\", 0xFFFF = \"L1-L3-L2\" }";
+    assert_eq!(shown(keys, &[0]), "L1-L2-L3");
+    assert_eq!(shown(keys, &[0xFFFF]), "L1-L3-L2");
+    assert_eq!(shown(keys, &[0xFFFE]), "-2");
 }

@@ -5,6 +5,7 @@ use std::str::FromStr;
 use meterpoll::codec::value::{ByteOrder, RegisterType};
 use meterpoll::codec::{ReadFunction, RegisterRange};
 use meterpoll::profile::Point;
+use meterpoll::profile::scaling::Scaling;
 use meterpoll::profile::selector::{Numbering, Reading, SelectError, select};
 use rust_decimal::Decimal;
 
@@ -74,7 +75,7 @@ fn a_count_can_be_more_than_one_read_carries() {
 #[test]
 fn type_order_factor_and_unit_are_taken() {
     let expected = Point {
-        scale: Decimal::from_str("0.1").expect("a decimal"),
+        scaling: Scaling::Times(Decimal::from_str("0.1").expect("a decimal")),
         unit: Some("kWh".to_owned()),
         ..plain(0x11F, RegisterType::U32, ByteOrder::Cdab)
     };
@@ -231,7 +232,7 @@ fn a_factor_is_a_number_other_than_0_on_a_number() {
         );
     }
     let negative = raw("0x0:i16*-0.001", Numbering::Protocol);
-    assert_eq!(negative[0].scale, Decimal::new(-1, 3));
+    assert_eq!(negative[0].constant_scale(), Some(Decimal::new(-1, 3)));
 }
 
 #[test]

@@ -92,7 +92,7 @@ impl Case {
         }
         let limits = &self.profile.limits;
         let is_named = |register: u32| {
-            let mut points = group.iter();
+            let mut points = group.iter().copied().chain(self.ordinary(function));
             points.any(|point| (first(point)..point.range.end()).contains(&register))
         };
         is(!group.iter().any(|point| self.must_be_alone(point))
@@ -298,6 +298,8 @@ fn any_case() -> impl Strategy<Value = Case> {
                     limits,
                     identification: None,
                     groups: Vec::new(),
+                    factors: Vec::new(),
+                    identities: Vec::new(),
                     points,
                 },
                 settings,

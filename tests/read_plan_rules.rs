@@ -207,3 +207,38 @@ fn holes_are_crossed_until_they_are_forbidden() {
         [(0x0C, 2), (0x10, 2)]
     );
 }
+
+#[test]
+fn registers_of_other_points_are_no_hole() {
+    let profile = profile("");
+    let strict = Profile {
+        limits: Limits {
+            read_holes: false,
+            ..profile.limits.clone()
+        },
+        ..profile
+    };
+    let rules = Rules::of(&strict);
+    // voltage_b lies between the two; between voltage_c and power_a lies nothing that is known.
+    assert_eq!(reads(&strict, &rules, "voltage_a voltage_c"), [(8, 6)]);
+    assert_eq!(
+        reads(&strict, &rules, "voltage_c power_a"),
+        [(0x0C, 2), (0x10, 2)]
+    );
+    // Nor is one crossed that harms or refuses.
+    assert_eq!(
+        reads(&strict, &rules, "power_a power_b"),
+        [(0x10, 2), (0x14, 2)]
+    );
+}
+
+#[test]
+fn a_unit_that_refuses_holes_is_asked_for_nothing_between() {
+    let profile = profile("");
+    let mut rules = Rules::of(&profile);
+    rules.forbid_holes();
+    assert_eq!(
+        reads(&profile, &rules, "voltage_a voltage_c"),
+        [(8, 2), (0x0C, 2)]
+    );
+}

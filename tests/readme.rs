@@ -94,7 +94,7 @@ fn documented() -> String {
 fn the_profile_that_shows_every_key_loads() {
     let profile = meterpoll::profile::load::load("format.rs", &documented());
     let profile = profile.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(profile.points.len(), 3);
+    assert_eq!(profile.points.len(), 14);
 }
 
 #[test]

@@ -1,8 +1,14 @@
 //! What the simulated PQM shows: quantities that agree, counters that rise, values that move.
 
+mod support {
+    pub(crate) mod measured;
+}
+
 use jiff::{SignedDuration, Timestamp};
-use meterpoll::sim::{Content, Measured, Model, Pqm};
+use meterpoll::sim::{Model, Pqm};
 use proptest::prelude::*;
+
+use support::measured::{at, float, number, raw, seconds, words};
 
 /// The points that have a minimum and a maximum.
 const MEASURED: [&str; 32] = [
@@ -50,46 +56,31 @@ const DEMANDS: [&str; 7] = [
     "demand_apparent",
 ];
 
-const COUNTERS: [&str; 6] = [
+/// What has a distortion, by the end of its point's name.
+const DISTORTED: [&str; 10] = [
+    "current_a",
+    "current_b",
+    "current_c",
+    "current_n",
+    "van",
+    "vbn",
+    "vcn",
+    "vab",
+    "vbc",
+    "vca",
+];
+
+const COUNTERS: [&str; 9] = [
     "energy_real_pos",
     "energy_real_neg",
     "energy_reactive_pos",
     "energy_reactive_neg",
     "energy_apparent",
     "energy_cost_total",
+    "pulse_input_1",
+    "pulse_input_2",
+    "pulse_input_total",
 ];
-
-fn at(time: &str) -> Timestamp {
-    time.parse().unwrap()
-}
-
-fn seconds(seconds: i64) -> SignedDuration {
-    SignedDuration::from_secs(seconds)
-}
-
-/// The raw integer of a point at one instant.
-fn number(measured: &dyn Measured, point: &str) -> i128 {
-    match measured.content(point) {
-        Some(Content::Number(number)) => number,
-        other => panic!("{point} holds {other:?}"),
-    }
-}
-
-fn raw(pqm: &Pqm, point: &str, now: Timestamp) -> i128 {
-    number(pqm.measure(now).as_ref(), point)
-}
-
-/// The registers of a point that is not a number.
-fn words(pqm: &Pqm, point: &str, now: Timestamp) -> Vec<u16> {
-    match pqm.measure(now).content(point) {
-        Some(Content::Words(words)) => words,
-        other => panic!("{point} holds {other:?}"),
-    }
-}
-
-fn float(number: i128) -> f64 {
-    f64::from(i32::try_from(number).unwrap())
-}
 
 /// The mean raw value of a point over the `span` seconds that end at `end`.
 fn mean_before(pqm: &Pqm, point: &str, end: Timestamp, span: i64) -> f64 {
@@ -216,6 +207,11 @@ proptest! {
                 let highest = raw(&format!("{point}_max"));
                 prop_assert!(value <= highest, "{point} is {value}, highest {highest}");
             }
+            for distorted in DISTORTED {
+                let value = raw(&format!("thd_{distorted}"));
+                let highest = raw(&format!("thd_{distorted}_max"));
+                prop_assert!((1..=highest).contains(&value), "THD of {distorted} is {value}");
+            }
         }
     }
 
@@ -327,7 +323,8 @@ fn time_stamps_of_extremes_are_fixed_and_past() {
         .iter()
         .flat_map(|point| [format!("{point}_min"), format!("{point}_max")]);
     let demands = DEMANDS.iter().map(|point| format!("{point}_max"));
-    for extreme in extremes.chain(demands) {
+    let distortions = DISTORTED.iter().map(|end| format!("thd_{end}_max"));
+    for extreme in extremes.chain(demands).chain(distortions) {
         for part in ["time", "date"] {
             let point = format!("{extreme}_{part}");
             assert_eq!(
@@ -394,6 +391,11 @@ fn a_point_the_meter_does_not_have_holds_nothing() {
         "current_a_minimum",
         "clock_time_min",
         "demand",
+        "thd_",
+        "thd_vax",
+        "thdf_d",
+        "event_",
+        "log1_",
     ] {
         assert_eq!(Pqm::new(1).measure(now).content(point), None, "{point}");
     }

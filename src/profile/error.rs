@@ -75,6 +75,9 @@ pub enum Problem {
         /// Its name.
         found: String,
     },
+    /// A factor that follows from itself.
+    #[error("goes round in a circle: {0}")]
+    Cycle(String),
     /// Two keys that do not go together.
     #[error("{0}")]
     Conflict(&'static str),

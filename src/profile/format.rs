@@ -31,6 +31,11 @@
 //! [labels]                      # tables of names that several points share
 //! on_off = { 0 = "off", 1 = "on" }
 //!
+//! [factors]                     # numbers that follow from setup registers, for scales
+//! multiplier = { product = [1.2, "ct_ratio"] }     # of numbers, points and other factors
+//! full_scale = { by = "ct_ratio", cases = { 1 = 500 }, otherwise = "multiplier" }
+//!                               # one of several, by the raw number of a point
+//!
 //! [groups]                      # names and globs; `default` is read when nothing is named
 //! default = ["voltage_*"]
 //!
@@ -40,7 +45,8 @@
 //! type = "i32"                  # u16 i16 u32 i32 u64 i64 f32 f64 hex bits mod10000 letter
 //!                               # time date ascii/N
 //! order = "CDAB"                # ABCD (default), CDAB, BADC, DCBA
-//! scale = 0.1                   # the raw number is multiplied with it; default 1
+//! scale = 0.1                   # the raw number is multiplied with it; default 1. Also the name of
+//!                               # a factor, or one number or another by where the raw one lies
 //! unit = "V"
 //! about = "phase voltage L1-N"
 //! no_value = { high_word = 0x7FFF, means = "overflow" }  # or raw = 65535, means = "absent"
@@ -59,17 +65,56 @@
 //! type = "u16"
 //! access = "read-write"         # read (default), write, read-write
 //! range = [0, 1]                # raw numbers that may be written
-//! labels = "on_off"             # a table of [labels], or one in place
+//! labels = "on_off"             # a table of [labels], or one in place; a code without a name
+//!                               # shows as its number
 //! function = 3                  # the one function that reads it, where the two differ
+//!
+//! [[points]]
+//! name = "ct_ratio"
+//! address = 0x1001
+//! type = "u16"
+//! access = "read-write"
+//! range = [1, 6000]             # what else stands there gives no scale
+//!
+//! [[points]]
+//! name = "active_power"
+//! address = 0x1002
+//! type = "u16"
+//! span = { full = 9999, low = "-full_scale", high = "full_scale" }  # raw 0 is low, 9999 is high
+//! only_with = { point = "backlight", codes = [1] }  # means nothing when it holds anything else
+//!
+//! [[points]]
+//! name = "user_register"
+//! address = 0x1100
+//! type = "hex"
+//! repeat = 8                    # user_register_1 to user_register_8, one behind the other
+//!
+//! [[points]]
+//! name = "frequency"
+//! address = 0x1200
+//! type = "u16"
+//! scale = [{ raw = [40, 70], factor = 1 }, { raw = [400, 700], factor = 0.1 }]
+//! unit = "Hz"
+//!
+//! [[identities]]                # what must hold on a live meter: `meters verify` tests it
+//! near = "frequency"            # or one of the five below
+//! one_of = [50, 60]
+//! tolerance = 0.02              # a part of the greater side; default 0.02
+//! # sum = "power", of = ["power_a", "power_b", "power_c"]
+//! # mean = "voltage", of = ["voltage_a", "voltage_b", "voltage_c"]
+//! # apparent = "va", real = "w", reactive = "var"
+//! # power_factor = "pf", real = "w", apparent = "va"
+//! # line_voltage = "voltage_ab", between = ["voltage_a", "voltage_b"]
 //! ```
 
-use std::collections::BTreeMap;
-use std::fmt;
+mod keys;
 
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{self, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
 use toml::Spanned;
+
+pub use keys::{LabelsKey, Number, OperandKey, ScaleKey};
 
 /// The whole file.
 #[derive(Debug, Deserialize)]
@@ -86,8 +131,12 @@ pub struct ProfileFile {
     #[serde(default)]
     pub(super) labels: BTreeMap<String, LabelTable>,
     #[serde(default)]
+    pub(super) factors: BTreeMap<Spanned<String>, FactorTable>,
+    #[serde(default)]
     pub(super) groups: BTreeMap<Spanned<String>, Vec<Spanned<String>>>,
     pub(super) points: Vec<PointTable>,
+    #[serde(default)]
+    pub(super) identities: Vec<Spanned<IdentityTable>>,
 }
 
 /// `[line]`.
@@ -136,10 +185,12 @@ pub type LabelTable = BTreeMap<Spanned<String>, String>;
 pub struct PointTable {
     pub(super) name: Spanned<String>,
     pub(super) address: Spanned<u16>,
+    pub(super) repeat: Option<Spanned<u16>>,
     #[serde(rename = "type")]
     pub(super) kind: Spanned<String>,
     pub(super) order: Option<Spanned<String>>,
-    pub(super) scale: Option<Spanned<Number>>,
+    pub(super) scale: Option<Spanned<ScaleKey>>,
+    pub(super) span: Option<Spanned<SpanTable>>,
     pub(super) unit: Option<String>,
     #[serde(default)]
     pub(super) about: String,
@@ -147,6 +198,7 @@ pub struct PointTable {
     pub(super) range: Option<Spanned<Vec<i64>>>,
     pub(super) labels: Option<Spanned<LabelsKey>>,
     pub(super) no_value: Option<Spanned<NoValueTable>>,
+    pub(super) only_with: Option<OnlyWithTable>,
     #[serde(default)]
     pub(super) alone: bool,
     pub(super) function: Option<Spanned<u8>>,
@@ -160,73 +212,6 @@ const fn verified() -> bool {
     true
 }
 
-/// A number with or without decimals.
-#[derive(Debug, Clone, Copy)]
-pub enum Number {
-    /// Without.
-    Integer(i64),
-    /// With; its shortest form is what was written.
-    Float(f64),
-}
-
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
-
-        impl Visitor<'_> for Either {
-            type Value = Number;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number")
-            }
-
-            fn visit_i64<E: de::Error>(self, number: i64) -> Result<Number, E> {
-                Ok(Number::Integer(number))
-            }
-
-            fn visit_f64<E: de::Error>(self, number: f64) -> Result<Number, E> {
-                Ok(Number::Float(number))
-            }
-        }
-
-        deserializer.deserialize_any(Either)
-    }
-}
-
-/// The name of a shared table, or the table itself.
-#[derive(Debug)]
-pub enum LabelsKey {
-    /// A table of `[labels]`.
-    Shared(String),
-    /// A table in place.
-    Own(LabelTable),
-}
-
-// By hand, because what serde derives for "one of two" loses the lines of the keys.
-impl<'de> Deserialize<'de> for LabelsKey {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
-
-        impl<'de> Visitor<'de> for Either {
-            type Value = LabelsKey;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a table of names, or the name of one in [labels]")
-            }
-
-            fn visit_str<E: de::Error>(self, name: &str) -> Result<LabelsKey, E> {
-                Ok(LabelsKey::Shared(name.to_owned()))
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<LabelsKey, A::Error> {
-                LabelTable::deserialize(MapAccessDeserializer::new(table)).map(LabelsKey::Own)
-            }
-        }
-
-        deserializer.deserialize_any(Either)
-    }
-}
-
 /// What stands for "no value": one of the two markers, and what it means.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -234,4 +219,57 @@ pub struct NoValueTable {
     pub(super) high_word: Option<u16>,
     pub(super) raw: Option<Spanned<i64>>,
     pub(super) means: Spanned<String>,
+}
+
+/// Where a figure lies between two others.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpanTable {
+    pub(super) full: Spanned<u16>,
+    pub(super) low: Spanned<OperandKey>,
+    pub(super) high: Spanned<OperandKey>,
+}
+
+/// Raw numbers that share a scale.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BandTable {
+    pub(super) raw: Spanned<Vec<i64>>,
+    pub(super) factor: Spanned<Number>,
+}
+
+/// The setup a point means anything with.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnlyWithTable {
+    pub(super) point: Spanned<String>,
+    pub(super) codes: Spanned<Vec<u16>>,
+}
+
+/// One of `[factors]`: a product, or a choice by a point.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FactorTable {
+    pub(super) product: Option<Vec<Spanned<OperandKey>>>,
+    pub(super) by: Option<Spanned<String>>,
+    pub(super) cases: Option<BTreeMap<Spanned<String>, Spanned<OperandKey>>>,
+    pub(super) otherwise: Option<Spanned<OperandKey>>,
+}
+
+/// One of `[[identities]]`; which law it is shows by its keys.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct IdentityTable {
+    pub(super) sum: Option<Spanned<String>>,
+    pub(super) mean: Option<Spanned<String>>,
+    pub(super) of: Option<Vec<Spanned<String>>>,
+    pub(super) apparent: Option<Spanned<String>>,
+    pub(super) real: Option<Spanned<String>>,
+    pub(super) reactive: Option<Spanned<String>>,
+    pub(super) power_factor: Option<Spanned<String>>,
+    pub(super) line_voltage: Option<Spanned<String>>,
+    pub(super) between: Option<[Spanned<String>; 2]>,
+    pub(super) near: Option<Spanned<String>>,
+    pub(super) one_of: Option<Vec<Spanned<Number>>>,
+    pub(super) tolerance: Option<Spanned<Number>>,
 }

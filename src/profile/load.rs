@@ -1,10 +1,13 @@
 //! The strict loader: TOML text to a checked [`Profile`], or one error with file, line and key.
 
+mod identity;
 mod point;
+mod scaling;
 mod syntax;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::Duration;
 
 use toml::Spanned;
@@ -15,7 +18,7 @@ use super::format::{
     IdentificationTable, LabelTable, LimitsTable, LineTable, PointTable, ProfileFile,
 };
 use super::model::{Group, Identification, Limits, Profile};
-use super::point::Point;
+use super::point::{Names, Point};
 use crate::codec::{FunctionCode, ReadFunction, RegisterBlock, RegisterRange, UnitRange};
 use crate::transport::{LineSettings, Parity, StopBits};
 
@@ -31,6 +34,9 @@ pub fn load(file: &str, text: &str) -> Result<Profile, ProfileError> {
     let limits = limits(&source, &table.limits)?;
     let labels = shared_labels(&source, &table.labels)?;
     let points = points(&source, &table.points, &labels, &limits)?;
+    let factors = scaling::factors(&source, &table.factors, &points)?;
+    scaling::references(&source, &table.points, &points, &factors)?;
+    let identities = identity::identities(&source, &table.identities, &points)?;
     let groups = groups(&source, &table.groups, &points)?;
     let identification = table
         .identification
@@ -44,7 +50,9 @@ pub fn load(file: &str, text: &str) -> Result<Profile, ProfileError> {
         limits,
         identification,
         groups,
+        factors,
         points,
+        identities,
     })
 }
 
@@ -124,6 +132,17 @@ impl Source<'_> {
                 self.value(text, key, expected)
             })
     }
+}
+
+/// A name that nothing has.
+fn unknown(
+    source: &Source<'_>,
+    name: &Spanned<String>,
+    what: &'static str,
+    key: &str,
+) -> ProfileError {
+    let found = name.as_ref().clone();
+    source.error(name.span(), key, Problem::Unknown { what, found })
 }
 
 fn line(source: &Source<'_>, table: &LineTable) -> Result<LineSettings, ProfileError> {
@@ -265,7 +284,7 @@ fn function(
 }
 
 /// The tables of `[labels]`, by name.
-type SharedLabels = BTreeMap<String, BTreeMap<u16, String>>;
+type SharedLabels = BTreeMap<String, Arc<Names>>;
 
 /// All of them, used or not.
 fn shared_labels(
@@ -274,7 +293,7 @@ fn shared_labels(
 ) -> Result<SharedLabels, ProfileError> {
     let tables = tables.iter().map(|(name, table)| {
         let names = point::label_names(source, table, &format!("labels.{name}"))?;
-        Ok((name.clone(), names))
+        Ok((name.clone(), Arc::new(names)))
     });
     tables.collect()
 }
@@ -286,17 +305,17 @@ fn points(
     labels: &SharedLabels,
     limits: &Limits,
 ) -> Result<Vec<Point>, ProfileError> {
-    let mut lines: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut lines: BTreeMap<String, usize> = BTreeMap::new();
     let mut points: Vec<(Point, Range<usize>)> = Vec::with_capacity(rows.len());
     for row in rows {
-        let name = row.name.as_ref().as_str();
-        let point = point::point(source, row, labels, limits)?;
         let line = source.line_of(row.name.span().start);
-        if let Some(first) = lines.insert(name, line) {
-            let problem = Problem::DuplicateName { first };
-            return Err(source.error(row.name.span(), format!("{name}.name"), problem));
+        for point in point::row(source, row, labels, limits)? {
+            if let Some(first) = lines.insert(point.name.clone(), line) {
+                let problem = Problem::DuplicateName { first };
+                return Err(source.error(row.name.span(), format!("{}.name", point.name), problem));
+            }
+            points.push((point, row.address.span()));
         }
-        points.push((point, row.address.span()));
     }
     points.sort_by_key(|(point, _)| (point.range, point.alone));
     overlaps(source, &points, limits)?;
@@ -361,11 +380,7 @@ fn groups(
                 }
             }
             if !found {
-                let problem = Problem::Unknown {
-                    what: "point",
-                    found: pattern.as_ref().clone(),
-                };
-                return Err(source.error(pattern.span(), key, problem));
+                return Err(unknown(source, pattern, "point", &key));
             }
         }
         groups.push(Group {
@@ -383,11 +398,7 @@ fn identification(
 ) -> Result<Identification, ProfileError> {
     let (name, key) = (table.point.as_ref(), "identification.point");
     let Some(point) = points.iter().find(|point| point.name == *name) else {
-        let problem = Problem::Unknown {
-            what: "point",
-            found: name.clone(),
-        };
-        return Err(source.error(table.point.span(), key, problem));
+        return Err(unknown(source, &table.point, "point", key));
     };
     if point.kind.registers() != 1 || !point.access.readable() {
         return Err(source.value(

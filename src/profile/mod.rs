@@ -2,6 +2,9 @@
 //!
 //! * [`model`] and [`point`]: the checked form that everything else works with.
 //! * [`format`](mod@format) and [`load`]: the TOML file and its strict loader.
+//! * [`scaling`] and [`setup`]: scales, and the setup registers that some of them follow from.
+//! * [`identity`]: what must hold between the values of a meter.
+//! * [`packed`]: how a profile lies in the program.
 //! * [`builtin`] and [`find`]: the meters inside the program, and where a name or a path leads.
 //! * [`selector`]: what a person types to choose points or raw registers.
 //! * [`plan`]: which requests fetch a set of points in the least time on this line.
@@ -11,11 +14,15 @@ pub mod builtin;
 pub mod error;
 pub mod find;
 pub mod format;
+pub mod identity;
 pub mod load;
 pub mod model;
+pub mod packed;
 pub mod plan;
 pub mod point;
+pub mod scaling;
 pub mod selector;
+pub mod setup;
 pub mod value;
 
 pub use error::ProfileError;
@@ -23,4 +30,5 @@ pub use model::{Limits, Profile};
 
 pub use plan::Plan;
 pub use point::Point;
+pub use setup::{Scales, Setup};
 pub use value::{Missing, Value};

@@ -1,10 +1,14 @@
 //! A meter, checked and ready to work with.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
+use super::identity::Identity;
 use super::point::Point;
+use super::scaling::Factor;
+use super::setup::needed;
 use crate::codec::{FunctionCode, ReadFunction, RegisterBlock, RegisterRange, UnitRange};
 use crate::transport::LineSettings;
 
@@ -25,8 +29,12 @@ pub struct Profile {
     pub identification: Option<Identification>,
     /// Named sets of points.
     pub groups: Vec<Group>,
+    /// Numbers that scales depend on and that follow from setup registers.
+    pub factors: Vec<Factor>,
     /// All points, by address.
     pub points: Vec<Point>,
+    /// What must hold between the values of points, whatever the load.
+    pub identities: Vec<Identity>,
 }
 
 /// What may be asked of a meter, and how fast.
@@ -117,6 +125,11 @@ impl Profile {
     /// A point by its name.
     pub fn point(&self, name: &str) -> Option<&Point> {
         self.points.iter().find(|point| point.name == name)
+    }
+
+    /// The names of the points that must be read to make sense of this one.
+    pub fn setup_of<'a>(&'a self, point: &'a Point) -> BTreeSet<&'a str> {
+        needed(point, &self.factors)
     }
 
     /// The points of a group, in its order.

@@ -119,7 +119,7 @@ fn of_one_function(spots: &[Spot], rules: &Rules, cost: Cost) -> Vec<PlannedRead
         .partition(|spot| spot.alone || !fence.allows(spot.range));
 
     let stretches: Vec<Stretch> = together.iter().map(|spot| stretch(spot.range)).collect();
-    let together = path::cheapest(&stretches, &fence, rules.may_cross_holes(), cost)
+    let together = path::cheapest(&stretches, &fence, cost)
         .into_iter()
         .filter_map(|read| together.get(read));
     // One request serves all that want the very same registers.

@@ -1,11 +1,14 @@
 //! A point: one quantity of a meter, where it lies and what it means.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rust_decimal::Decimal;
 use rust_decimal::prelude::ToPrimitive;
 use serde::{Deserialize, Serialize};
 
+use super::scaling::{Band, Scaling, times, within};
+use super::setup::Scales;
 use super::value::{Missing, Value};
 use crate::codec::value::{self, ByteOrder, Raw, RegisterType, ValueError};
 use crate::codec::{ReadFunction, RegisterRange};
@@ -23,9 +26,8 @@ pub struct Point {
     pub kind: RegisterType,
     /// How the bytes lie in them.
     pub order: ByteOrder,
-    /// What the raw number is multiplied with.
-    #[serde(with = "rust_decimal::serde::str")]
-    pub scale: Decimal,
+    /// How the raw number becomes a figure.
+    pub scaling: Scaling,
     /// The unit of the scaled number: `A`, `kWh`.
     pub unit: Option<String>,
     /// Whether it can be read and written.
@@ -33,9 +35,12 @@ pub struct Point {
     /// Lowest and highest raw integer that may be written.
     pub limits: Option<(i128, i128)>,
     /// Names of codes or of bits.
+    #[serde(skip)]
     pub labels: Labels,
     /// What the meter stores in place of a value it does not have.
     pub no_value: Option<NoValue>,
+    /// The setup it means anything with; `None` when it always does.
+    pub only_with: Option<OnlyWith>,
     /// It must be read by a request of its own.
     pub alone: bool,
     /// The one function it can be read with; `None` leaves the choice to the meter's limits.
@@ -65,17 +70,21 @@ impl Access {
     }
 }
 
-/// Names for numbers or bits.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+/// Names for numbers or bits, by the register that holds them. Points that share a table of the
+/// profile hold the same one.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Labels {
     /// None: the number itself is shown.
     #[default]
     None,
     /// A name a code.
-    Codes(BTreeMap<u16, String>),
+    Codes(Arc<Names>),
     /// A name a mask, lowest bit first.
-    Bits(BTreeMap<u16, String>),
+    Bits(Arc<Names>),
 }
+
+/// Names by the codes or masks they stand for.
+pub type Names = BTreeMap<u16, String>;
 
 /// The marker a meter stores in place of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,6 +104,15 @@ pub enum Marker {
     Raw(i128),
 }
 
+/// The setup that a point means anything with: a point of one register that holds one of these.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OnlyWith {
+    /// The name of the other point.
+    pub point: String,
+    /// Its raw numbers.
+    pub codes: Vec<u16>,
+}
+
 impl Point {
     /// A raw register as a point: read only, no labels, nothing known about it.
     pub fn raw(range: RegisterRange, kind: RegisterType, order: ByteOrder) -> Self {
@@ -104,12 +122,13 @@ impl Point {
             range,
             kind,
             order,
-            scale: Decimal::ONE,
+            scaling: Scaling::NONE,
             unit: None,
             access: Access::Read,
             limits: None,
             labels: Labels::None,
             no_value: None,
+            only_with: None,
             alone: false,
             function: None,
             verified: true,
@@ -117,11 +136,43 @@ impl Point {
         }
     }
 
-    /// What the registers of this point mean.
+    /// What the raw number is multiplied with, where that is always the same number.
+    pub const fn constant_scale(&self) -> Option<Decimal> {
+        match self.scaling {
+            Scaling::Times(scale) => Some(scale),
+            _ => None,
+        }
+    }
+
+    /// The difference that one raw step makes, on a meter that is set up like this; 0 where steps
+    /// are not known or too small to tell.
+    pub fn step(&self, scales: Scales<'_>) -> f64 {
+        let step = match (&self.scaling, self.kind.is_integer()) {
+            (_, false) => None,
+            (Scaling::Times(scale), true) => Some(*scale),
+            (Scaling::TimesFactor(name), true) => scales.named(name).ok(),
+            (Scaling::TimesByRaw(bands), true) => bands.iter().map(|band| band.factor).max(),
+            (Scaling::Span { full, low, high }, true) => scales
+                .operand(high)
+                .ok()
+                .zip(scales.operand(low).ok())
+                .and_then(|(high, low)| high.checked_sub(low)?.checked_div((*full).into())),
+        };
+        step.and_then(|step| step.abs().to_f64())
+            .unwrap_or_default()
+    }
+
+    /// What the registers of this point mean on a meter that is set up like this.
     ///
     /// # Errors
-    /// [`Missing`] when the meter marks the value as not there, or the registers cannot hold one.
-    pub fn interpret(&self, registers: &[u16]) -> Result<Value, Missing> {
+    /// [`Missing`] when the meter marks the value as not there, when it means nothing with this
+    /// setup, or when the registers cannot hold one.
+    pub fn interpret(&self, registers: &[u16], scales: Scales<'_>) -> Result<Value, Missing> {
+        if let Some(with) = &self.only_with
+            && !with.codes.contains(&scales.code(&with.point)?)
+        {
+            return Err(Missing::Absent);
+        }
         let raw = value::decode(self.kind, self.order, registers).map_err(|error| match error {
             ValueError::Unset => Missing::Absent,
             ValueError::Length { .. } | ValueError::Impossible { .. } => Missing::Mismatch,
@@ -133,7 +184,7 @@ impl Point {
             return Err(no_value.missing);
         }
         match raw? {
-            Raw::Integer(number) => self.integer(number),
+            Raw::Integer(number) => self.integer(number, scales),
             Raw::Single(number) => self.single(number),
             Raw::Double(number) => self.double(number),
             Raw::Word(word) => Ok(Value::Text(self.word(word))),
@@ -154,20 +205,32 @@ impl Point {
         }
     }
 
-    fn integer(&self, number: i128) -> Result<Value, Missing> {
-        if let (Labels::Codes(codes), Ok(code)) = (&self.labels, u16::try_from(number))
+    fn integer(&self, number: i128, scales: Scales<'_>) -> Result<Value, Missing> {
+        if let (Labels::Codes(codes), Some(code)) = (&self.labels, register(number))
             && let Some(label) = codes.get(&code)
         {
             return Ok(Value::Text(label.clone()));
         }
-        times(number, 0, self.scale)
+        let factor = match &self.scaling {
+            Scaling::Times(scale) => *scale,
+            Scaling::TimesFactor(name) => scales.named(name)?,
+            Scaling::TimesByRaw(bands) => {
+                let holds = |band: &&Band| (band.lowest..=band.highest).contains(&number);
+                bands.iter().find(holds).ok_or(Missing::Mismatch)?.factor
+            }
+            Scaling::Span { full, low, high } => {
+                let (low, high) = (scales.operand(low)?, scales.operand(high)?);
+                return within(number, *full, low, high).map(Value::Decimal);
+            }
+        };
+        times(number, 0, factor)
             .map(Value::Decimal)
             .ok_or(Missing::Mismatch)
     }
 
     fn single(&self, number: f32) -> Result<Value, Missing> {
         finite(f64::from(number))?;
-        if self.scale == Decimal::ONE {
+        if self.scaling == Scaling::NONE {
             return Ok(Value::Single(number));
         }
         self.scaled(f64::from(number), &number.to_string())
@@ -175,7 +238,7 @@ impl Point {
 
     fn double(&self, number: f64) -> Result<Value, Missing> {
         finite(number)?;
-        if self.scale == Decimal::ONE {
+        if self.scaling == Scaling::NONE {
             return Ok(Value::Double(number));
         }
         self.scaled(number, &number.to_string())
@@ -184,12 +247,14 @@ impl Point {
     /// Scaled from the digits a float prints, not from the ones its binary form adds, and rounded
     /// once; as a float where the product is no decimal.
     fn scaled(&self, number: f64, printed: &str) -> Result<Value, Missing> {
+        // The loader gives a float no other scale than a number.
+        let scale = self.constant_scale().ok_or(Missing::Mismatch)?;
         let exact = Decimal::from_str_exact(printed)
             .ok()
-            .and_then(|printed| times(printed.mantissa(), printed.scale(), self.scale));
+            .and_then(|printed| times(printed.mantissa(), printed.scale(), scale));
         let scaled = match exact.and_then(|product| product.to_string().parse().ok()) {
             Some(scaled) => scaled,
-            None => number * self.scale.to_f64().ok_or(Missing::Mismatch)?,
+            None => number * scale.to_f64().ok_or(Missing::Mismatch)?,
         };
         finite(scaled).map(Value::Double)
     }
@@ -204,11 +269,10 @@ impl Point {
     }
 }
 
-/// `mantissa` with this many decimals times the scale, exactly and with all their decimals; `None`
-/// where a decimal does not hold that many digits.
-pub(super) fn times(mantissa: i128, decimals: u32, scale: Decimal) -> Option<Decimal> {
-    let product = mantissa.checked_mul(scale.mantissa())?;
-    Decimal::try_from_i128_with_scale(product, decimals + scale.scale()).ok()
+/// The register that holds a number of one register, negative ones included: labels go by that.
+fn register(number: i128) -> Option<u16> {
+    let signed = || i16::try_from(number).ok().map(i16::cast_unsigned);
+    u16::try_from(number).ok().or_else(signed)
 }
 
 const fn finite(number: f64) -> Result<f64, Missing> {
@@ -222,7 +286,7 @@ const fn finite(number: f64) -> Result<f64, Missing> {
 }
 
 /// Names of the bits that are set, `|` between them; bits without a name as one number in hex.
-fn bit_names(names: &BTreeMap<u16, String>, word: u16) -> String {
+fn bit_names(names: &Names, word: u16) -> String {
     let mut shown: Vec<String> = Vec::new();
     let mut unknown = word;
     for (mask, name) in names {

@@ -13,6 +13,7 @@ mod harvest;
 mod lesson;
 pub mod memory;
 pub mod take;
+pub mod verify;
 
 use jiff::Timestamp;
 

@@ -5,7 +5,7 @@ use super::{Fault, Memory, Row};
 use crate::client::{Client, Failure, Patience};
 use crate::codec::{ExceptionCode, ReadFunction, Unit};
 use crate::profile::plan::{Cost, PlannedRead};
-use crate::profile::{Missing, Point, Value};
+use crate::profile::{Missing, Point, Scales, Value};
 
 /// What is asked of a unit.
 #[derive(Debug, Clone, Copy)]
@@ -82,7 +82,7 @@ fn interpret(
 ) -> Vec<Result<Value, Fault>> {
     let mut value = |(point, registers): (&Point, &Result<Vec<u16>, Fault>)| {
         let registers = registers.as_deref().map_err(|fault| *fault)?;
-        point.interpret(registers).map_err(|missing| {
+        point.interpret(registers, Scales::none()).map_err(|missing| {
             if missing == Missing::Mismatch {
                 troubles.push(Trouble::Impossible {
                     point: point.name.clone(),

@@ -1,21 +1,49 @@
 //! One point of the file, checked.
 
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use rust_decimal::Decimal;
 use toml::Spanned;
 
-use super::{SharedLabels, Source};
+use super::{SharedLabels, Source, scaling};
 use crate::codec::value::RegisterType;
 use crate::codec::{FunctionCode, ReadFunction, RegisterRange};
 use crate::profile::error::{Problem, ProfileError};
-use crate::profile::format::{LabelTable, LabelsKey, NoValueTable, Number, PointTable};
+use crate::profile::format::{LabelTable, LabelsKey, NoValueTable, PointTable};
 use crate::profile::model::Limits;
-use crate::profile::point::{Access, Labels, Marker, NoValue, Point, times};
+use crate::profile::point::{Access, Labels, Marker, Names, NoValue, OnlyWith, Point};
 use crate::profile::value::Missing;
 
-/// Checks one point against itself and the meter's limits.
-pub(super) fn point(
+/// The points of one row: one, or as many as it repeats, each checked against itself and the meter's
+/// limits.
+pub(super) fn row(
+    source: &Source<'_>,
+    row: &PointTable,
+    shared: &SharedLabels,
+    limits: &Limits,
+) -> Result<Vec<Point>, ProfileError> {
+    let first = point(source, row, shared, limits)?;
+    let Some(repeat) = &row.repeat else {
+        return Ok(vec![first]);
+    };
+    let key = |key: &str| format!("{}.{key}", first.name);
+    let (start, width) = (first.range.start().get(), first.range.count());
+    let most = (u16::MAX - start) / width;
+    if !(2..=most).contains(repeat.as_ref()) {
+        let expected = format!("2 to {most}, as many as lie below 0xFFFF");
+        return Err(source.value(repeat, &key("repeat"), expected));
+    }
+    let places = (0..*repeat.as_ref()).map(|place| {
+        let start = start + place * width;
+        Ok(Point {
+            name: format!("{}_{}", first.name, place + 1),
+            range: range(source, row, start, first.kind, limits, &key)?,
+            ..first.clone()
+        })
+    });
+    places.collect()
+}
+
+fn point(
     source: &Source<'_>,
     row: &PointTable,
     shared: &SharedLabels,
@@ -29,26 +57,18 @@ pub(super) fn point(
         Some(order) => parsed(source, order, key("order"))?,
         None => crate::codec::value::ByteOrder::default(),
     };
-    let range = range(source, row, kind, limits, &key)?;
-    let scale = match &row.scale {
-        None => Decimal::ONE,
-        Some(scale) => scaled(source, scale, kind, &key("scale"))?,
-    };
+    let range = range(source, row, *row.address.as_ref(), kind, limits, &key)?;
+    let scaling = scaling::scaling(source, row, kind, &key)?;
     let labels = match &row.labels {
         None => Labels::None,
         Some(labels) => named(source, labels, kind, shared, &key("labels"))?,
     };
-    if !matches!(labels, Labels::None) && scale != Decimal::ONE {
-        let at = row.scale.as_ref().map_or(row.name.span(), Spanned::span);
-        let problem = Problem::Conflict("a point with labels has no scale");
-        return Err(source.error(at, key("scale"), problem));
-    }
     Ok(Point {
         about: row.about.clone(),
         range,
         kind,
         order,
-        scale,
+        scaling,
         unit: row.unit.clone(),
         access: access(source, row.access.as_ref(), &key("access"))?,
         limits: row
@@ -62,6 +82,10 @@ pub(super) fn point(
             .as_ref()
             .map(|marker| no_value(source, marker, kind, &key("no_value")))
             .transpose()?,
+        only_with: row.only_with.as_ref().map(|with| OnlyWith {
+            point: with.point.as_ref().clone(),
+            codes: with.codes.as_ref().clone(),
+        }),
         alone: row.alone,
         function: row
             .function
@@ -87,11 +111,12 @@ fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
 fn range(
     source: &Source<'_>,
     row: &PointTable,
+    start: u16,
     kind: RegisterType,
     limits: &Limits,
     key: &impl Fn(&str) -> String,
 ) -> Result<RegisterRange, ProfileError> {
-    let (start, count) = (*row.address.as_ref(), kind.registers());
+    let count = kind.registers();
     let past_end = |end: String| {
         let problem = Problem::PastEnd { start, count, end };
         source.error(row.address.span(), key("address"), problem)
@@ -109,33 +134,6 @@ fn range(
         return Err(past_end(format!("the end of its table of {size}")));
     }
     RegisterRange::new(start, count).map_err(|_| past_end("0xFFFF, the last address".to_owned()))
-}
-
-fn scaled(
-    source: &Source<'_>,
-    scale: &Spanned<Number>,
-    kind: RegisterType,
-    key: &str,
-) -> Result<Decimal, ProfileError> {
-    if !kind.is_number() {
-        let problem = Problem::Conflict("only a number has a scale");
-        return Err(source.error(scale.span(), key, problem));
-    }
-    let exact = match scale.as_ref() {
-        Number::Integer(number) => Some(Decimal::from(*number)),
-        // The shortest form that reads back the same is what was written.
-        Number::Float(number) => Decimal::from_str_exact(&number.to_string()).ok(),
-    };
-    let Some(exact) = exact.filter(|scale| !scale.is_zero()) else {
-        return Err(source.value(scale, key, "a number other than 0, of at most 28 digits"));
-    };
-    if let Some((least, most)) = kind.bounds()
-        && (times(least, 0, exact).is_none() || times(most, 0, exact).is_none())
-    {
-        let expected = format!("a number that every {kind} can be multiplied with exactly");
-        return Err(source.value(scale, key, expected));
-    }
-    Ok(exact)
 }
 
 fn access(
@@ -246,7 +244,7 @@ fn named(
     key: &str,
 ) -> Result<Labels, ProfileError> {
     let names = match labels.as_ref() {
-        LabelsKey::Own(table) => label_names(source, table, key)?,
+        LabelsKey::Own(table) => Arc::new(label_names(source, table, key)?),
         LabelsKey::Shared(name) => shared.get(name).cloned().ok_or_else(|| {
             let problem = Problem::Unknown {
                 what: "label table",
@@ -257,9 +255,9 @@ fn named(
     };
     match kind {
         RegisterType::Bits => Ok(Labels::Bits(names)),
-        RegisterType::U16 | RegisterType::Hex => Ok(Labels::Codes(names)),
+        RegisterType::U16 | RegisterType::I16 | RegisterType::Hex => Ok(Labels::Codes(names)),
         _ => {
-            let problem = Problem::Conflict("only u16, hex and bits have labels");
+            let problem = Problem::Conflict("only u16, i16, hex and bits have labels");
             Err(source.error(labels.span(), key, problem))
         }
     }
@@ -270,22 +268,15 @@ pub(super) fn label_names(
     source: &Source<'_>,
     table: &LabelTable,
     key: &str,
-) -> Result<BTreeMap<u16, String>, ProfileError> {
-    let mut names: BTreeMap<u16, String> = BTreeMap::new();
+) -> Result<Names, ProfileError> {
+    let mut names = Names::new();
     let mut rows: Vec<_> = table.iter().collect();
     rows.sort_by_key(|(code, _)| code.span().start);
     for (code, name) in rows {
-        let text = code.as_ref();
-        let number = match text.strip_prefix("0x") {
-            Some(hex) => u16::from_str_radix(hex, 16),
-            None => text.parse(),
-        };
-        let Ok(number) = number else {
-            return Err(source.value(code, key, "a code: 0 to 65535, or 0x0 to 0xFFFF"));
-        };
+        let number = self::code(source, code, key)?;
         if let Some(first) = names.insert(number, name.clone()) {
             let problem = Problem::LabelClash {
-                code: text.clone(),
+                code: code.as_ref().clone(),
                 first,
                 second: name.clone(),
             };
@@ -293,4 +284,18 @@ pub(super) fn label_names(
         }
     }
     Ok(names)
+}
+
+/// A code as a key: decimal or `0x`.
+pub(super) fn code(
+    source: &Source<'_>,
+    written: &Spanned<String>,
+    key: &str,
+) -> Result<u16, ProfileError> {
+    let text = written.as_ref();
+    let number = match text.strip_prefix("0x") {
+        Some(hex) => u16::from_str_radix(hex, 16),
+        None => text.parse(),
+    };
+    number.map_err(|_| source.value(written, key, "a code: 0 to 65535, or 0x0 to 0xFFFF"))
 }

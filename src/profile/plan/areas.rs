@@ -18,6 +18,18 @@ pub(super) struct Areas {
 }
 
 impl Areas {
+    /// The same registers in as few stretches as it takes: neighbours become one.
+    pub(super) fn joined(&self) -> Self {
+        let mut joined: Vec<Stretch> = Vec::new();
+        for (start, reach) in self.starts.iter().zip(&self.reach) {
+            match joined.last_mut() {
+                Some((_, end)) if start <= end => *end = *reach,
+                _ => joined.push((*start, *reach)),
+            }
+        }
+        joined.into_iter().collect()
+    }
+
     /// Whether one of them has a register in common with this stretch. Of an empty stretch, which
     /// is a border between two registers: whether it lies inside one of them.
     pub(super) fn overlap(&self, (start, end): Stretch) -> bool {

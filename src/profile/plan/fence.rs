@@ -1,6 +1,7 @@
 //! Where reads of one function have to end.
 
 use super::areas::{Areas, Stretch, stretch};
+use super::rules::Holes;
 use crate::codec::RegisterRange;
 
 /// What stands in the way of reads of several points, made ready for very many questions.
@@ -10,6 +11,10 @@ pub(super) struct Fence<'a> {
     pub(super) most: u16,
     /// A read must not cross a multiple of this.
     pub(super) table_registers: Option<u16>,
+    /// What a read may cover besides the registers of its points.
+    holes: Holes,
+    /// The registers of ordinary points.
+    known: &'a Areas,
     /// What no read may touch.
     pub(super) barriers: Areas,
     /// What no read may begin or end inside of.
@@ -21,6 +26,7 @@ pub(super) struct Fence<'a> {
 impl<'a> Fence<'a> {
     pub(super) fn new(
         (most, table_registers): (u16, Option<u16>),
+        (holes, known): (Holes, &'a Areas),
         barriers: Areas,
         whole: &'a Areas,
         mut refused: Vec<Stretch>,
@@ -34,6 +40,8 @@ impl<'a> Fence<'a> {
         Self {
             most,
             table_registers,
+            holes,
+            known,
             barriers,
             whole,
             refused,
@@ -55,6 +63,15 @@ impl<'a> Fence<'a> {
             furthest = furthest.min(end - 1);
         }
         furthest
+    }
+
+    /// Whether a read may go on across registers that none of its points names.
+    pub(super) fn allows_hole(&self, hole: Stretch) -> bool {
+        match self.holes {
+            Holes::Any => true,
+            Holes::Known => self.known.hold(hole),
+            Holes::None => false,
+        }
     }
 
     /// Whether a read of several points may be one of just these registers.

@@ -12,12 +12,7 @@ use super::fence::Fence;
 /// A read is a run of neighbours in this order, and none that is not could be cheaper: of two reads
 /// that begin one after the other, every point that begins in the later one can be fetched by the
 /// one that ends last, and the other only shrinks by it.
-pub(super) fn cheapest(
-    spots: &[Stretch],
-    fence: &Fence<'_>,
-    may_cross_holes: bool,
-    cost: Cost,
-) -> Vec<Range<usize>> {
+pub(super) fn cheapest(spots: &[Stretch], fence: &Fence<'_>, cost: Cost) -> Vec<Range<usize>> {
     // best[n]: the cost of the first n spots, and where the last read of it begins.
     let mut best: Vec<(u64, usize)> = vec![(u64::MAX, 0); spots.len() + 1];
     best[0] = (0, 0);
@@ -26,10 +21,10 @@ pub(super) fn cheapest(
         let furthest = fence.furthest(*start);
         let mut end = *start;
         for ((spot_start, spot_end), after) in spots[first..].iter().zip(&mut best[first + 1..]) {
-            let is_hole = *spot_start > end;
+            let stops = *spot_start > end && !fence.allows_hole((end, *spot_start));
             end = end.max(*spot_end);
             // What lies beyond a border stays beyond it, however many points follow.
-            if end > furthest || (is_hole && !may_cross_holes) {
+            if end > furthest || stops {
                 break;
             }
             let total = so_far.saturating_add(cost.nanoseconds(u64::from(end - start)));

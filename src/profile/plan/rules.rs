@@ -13,14 +13,25 @@ use crate::profile::point::Point;
 pub struct Rules {
     /// The most registers in one read.
     most: u16,
-    /// Whether a read may cover registers that none of its points names.
-    may_cross_holes: bool,
+    /// What a read may cover besides the registers of its points.
+    holes: Holes,
     /// A read must not cross a multiple of this.
     table_registers: Option<u16>,
     /// Whether functions 03 and 04 read the same registers: then all of them are in `holding`.
     interchangeable: bool,
     holding: Registers,
     input: Registers,
+}
+
+/// What a read may cover besides the registers of its points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Holes {
+    /// Anything.
+    Any,
+    /// Registers of other points that can be read.
+    Known,
+    /// Nothing.
+    None,
 }
 
 /// What is special about some registers of one function.
@@ -32,6 +43,8 @@ struct Registers {
     /// Points of which a part means something else when it is read alone: no read begins or ends
     /// inside them, but for one of that part.
     whole: Areas,
+    /// Those of ordinary points, which a read may cover for the sake of its neighbours.
+    known: Areas,
     /// Those that the unit does not give in one request.
     refused: Vec<Stretch>,
 }
@@ -41,7 +54,11 @@ impl Rules {
     pub fn new(limits: &Limits) -> Self {
         Self {
             most: limits.read_registers,
-            may_cross_holes: limits.read_holes,
+            holes: if limits.read_holes {
+                Holes::Any
+            } else {
+                Holes::Known
+            },
             table_registers: limits.table_registers,
             interchangeable: limits.interchangeable_reads,
             holding: Registers::default(),
@@ -69,7 +86,7 @@ impl Rules {
 
     /// Whether a read may cover registers that none of its points names.
     pub const fn may_cross_holes(&self) -> bool {
-        self.may_cross_holes
+        !matches!(self.holes, Holes::None)
     }
 
     /// From now on no read has more registers than this.
@@ -79,7 +96,7 @@ impl Rules {
 
     /// From now on no read covers registers that none of its points names.
     pub const fn forbid_holes(&mut self) {
-        self.may_cross_holes = false;
+        self.holes = Holes::None;
     }
 
     /// From now on no read of several points covers all of these registers.
@@ -115,6 +132,7 @@ impl Rules {
         let alone = alone.filter(|alone| !registers.whole.hold(*alone));
         Fence::new(
             (self.most, self.table_registers),
+            (self.holes, &registers.known),
             registers.barriers.iter().copied().chain(alone).collect(),
             &registers.whole,
             registers.refused.clone(),
@@ -148,6 +166,7 @@ impl Registers {
         Self {
             barriers,
             whole: whole.collect(),
+            known: readable.joined(),
             refused: Vec::new(),
         }
     }

@@ -6,6 +6,7 @@ use super::{Numbering, Reading, SelectError};
 use crate::codec::value::{ByteOrder, RegisterType};
 use crate::codec::{AddressError, FunctionCode, ReadFunction, RegisterRange};
 use crate::profile::point::Point;
+use crate::profile::scaling::Scaling;
 
 /// Raw registers: `ADDRESS[+COUNT][:TYPE[/ORDER]][*FACTOR][=UNIT]`.
 pub(super) fn registers(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> {
@@ -65,7 +66,7 @@ pub(super) fn registers(selector: &str, reading: Reading<'_>) -> Result<Vec<Poin
         .map(|index| {
             let range = RegisterRange::new(start + index * width, width).map_err(address)?;
             Ok(Point {
-                scale,
+                scaling: Scaling::Times(scale),
                 unit: unit.map(str::to_owned),
                 function: implied.or(reading.function),
                 ..Point::raw(range, kind, order)

@@ -30,6 +30,11 @@ pub(super) fn text(text: &str) -> Content {
     Content::Words(words.collect())
 }
 
+/// Text in as many characters as the point has, the rest of them spaces.
+pub(super) fn padded(content: &str, length: usize) -> Content {
+    text(&format!("{content:<length$}"))
+}
+
 fn utc(time: Timestamp) -> DateTime {
     TimeZone::UTC.to_datetime(time)
 }

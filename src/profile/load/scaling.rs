@@ -1,0 +1,356 @@
+//! Scales: numbers, factors that follow from setup registers, spans.
+
+use std::collections::BTreeMap;
+
+use rust_decimal::Decimal;
+use toml::Spanned;
+
+use super::point::code;
+use super::{Source, unknown};
+use crate::codec::value::RegisterType;
+use crate::profile::error::{Problem, ProfileError};
+use crate::profile::format::{
+    BandTable, FactorTable, Number, OnlyWithTable, OperandKey, PointTable, ScaleKey, SpanTable,
+};
+use crate::profile::point::Point;
+use crate::profile::scaling::{Band, Factor, Operand, Rule, Scaling, times};
+
+/// The scale of one point; which names there are is checked when all points and factors are known.
+pub(super) fn scaling(
+    source: &Source<'_>,
+    row: &PointTable,
+    kind: RegisterType,
+    key: &impl Fn(&str) -> String,
+) -> Result<Scaling, ProfileError> {
+    if let Some(span) = &row.span {
+        if let Some(scale) = &row.scale {
+            let problem = Problem::Conflict("give either scale or span");
+            return Err(source.error(scale.span(), key("scale"), problem));
+        }
+        integer(source, span, kind, key("span"))?;
+        return spanned(source, span.as_ref(), key);
+    }
+    let Some(scale) = &row.scale else {
+        return Ok(Scaling::NONE);
+    };
+    let key = key("scale");
+    match scale.as_ref() {
+        ScaleKey::Number(number) => {
+            let shown = Spanned::new(scale.span(), *number);
+            scaled(source, &shown, kind, &key).map(Scaling::Times)
+        }
+        ScaleKey::Factor(name) => {
+            integer(source, scale, kind, key)?;
+            Ok(Scaling::TimesFactor(name.clone()))
+        }
+        ScaleKey::Bands(bands) => {
+            integer(source, scale, kind, key.clone())?;
+            banded(source, scale, bands, kind, &key)
+        }
+    }
+}
+
+fn integer<T>(
+    source: &Source<'_>,
+    found: &Spanned<T>,
+    kind: RegisterType,
+    key: String,
+) -> Result<(), ProfileError> {
+    if kind.is_integer() {
+        return Ok(());
+    }
+    let problem = Problem::Conflict("only an integer has such a scale");
+    Err(source.error(found.span(), key, problem))
+}
+
+/// A number that every raw number of the type can be multiplied with exactly.
+fn scaled(
+    source: &Source<'_>,
+    scale: &Spanned<Number>,
+    kind: RegisterType,
+    key: &str,
+) -> Result<Decimal, ProfileError> {
+    if !kind.is_number() {
+        let problem = Problem::Conflict("only a number has a scale");
+        return Err(source.error(scale.span(), key, problem));
+    }
+    let exact = decimal(*scale.as_ref()).filter(|scale| !scale.is_zero());
+    let Some(exact) = exact else {
+        return Err(source.value(scale, key, "a number other than 0, of at most 28 digits"));
+    };
+    if let Some((least, most)) = kind.bounds()
+        && (times(least, 0, exact).is_none() || times(most, 0, exact).is_none())
+    {
+        let expected = format!("a number that every {kind} can be multiplied with exactly");
+        return Err(source.value(scale, key, expected));
+    }
+    Ok(exact)
+}
+
+/// The number as it was written.
+pub(super) fn decimal(number: Number) -> Option<Decimal> {
+    match number {
+        Number::Integer(number) => Some(Decimal::from(number)),
+        // The shortest form that reads back the same is what was written.
+        Number::Float(number) => Decimal::from_str_exact(&number.to_string()).ok(),
+    }
+}
+
+fn banded(
+    source: &Source<'_>,
+    scale: &Spanned<ScaleKey>,
+    tables: &[BandTable],
+    kind: RegisterType,
+    key: &str,
+) -> Result<Scaling, ProfileError> {
+    if tables.is_empty() {
+        return Err(source.value(scale, key, "a list of { raw, factor }"));
+    }
+    let mut bands: Vec<Band> = Vec::with_capacity(tables.len());
+    for table in tables {
+        let factor = scaled(source, &table.factor, kind, &format!("{key}.factor"))?;
+        let (lowest, highest) = match *table.raw.as_ref().as_slice() {
+            [lowest, highest] if lowest <= highest => (lowest.into(), highest.into()),
+            _ => {
+                let expected = "[lowest, highest] raw number";
+                return Err(source.value(&table.raw, &format!("{key}.raw"), expected));
+            }
+        };
+        if bands
+            .iter()
+            .any(|band| lowest <= band.highest && band.lowest <= highest)
+        {
+            let problem = Problem::Conflict("these raw numbers have a factor already");
+            return Err(source.error(table.raw.span(), format!("{key}.raw"), problem));
+        }
+        bands.push(Band {
+            lowest,
+            highest,
+            factor,
+        });
+    }
+    Ok(Scaling::TimesByRaw(bands))
+}
+
+fn spanned(
+    source: &Source<'_>,
+    table: &SpanTable,
+    key: &impl Fn(&str) -> String,
+) -> Result<Scaling, ProfileError> {
+    if *table.full.as_ref() == 0 {
+        return Err(source.value(&table.full, &key("span.full"), "above 0"));
+    }
+    Ok(Scaling::Span {
+        full: *table.full.as_ref(),
+        low: operand(source, &table.low, &key("span.low"))?,
+        high: operand(source, &table.high, &key("span.high"))?,
+    })
+}
+
+fn operand(
+    source: &Source<'_>,
+    found: &Spanned<OperandKey>,
+    key: &str,
+) -> Result<Operand, ProfileError> {
+    match found.as_ref() {
+        OperandKey::Number(number) => decimal(*number)
+            .map(Operand::Number)
+            .ok_or_else(|| source.value(found, key, "a number of at most 28 digits")),
+        OperandKey::Name(name) => Ok(Operand::Named {
+            name: name.trim_start_matches('-').to_owned(),
+            negative: name.starts_with('-'),
+        }),
+    }
+}
+
+/// All factors, each of them of things there are and none of itself.
+pub(super) fn factors(
+    source: &Source<'_>,
+    tables: &BTreeMap<Spanned<String>, FactorTable>,
+    points: &[Point],
+) -> Result<Vec<Factor>, ProfileError> {
+    let mut factors = Vec::with_capacity(tables.len());
+    for (name, table) in tables {
+        let key = format!("factors.{}", name.as_ref());
+        source.name(name, &key)?;
+        if points.iter().any(|point| point.name == *name.as_ref()) {
+            let problem = Problem::Conflict("there is a point of this name");
+            return Err(source.error(name.span(), key, problem));
+        }
+        factors.push(Factor {
+            name: name.as_ref().clone(),
+            rule: rule(source, name, table, &key)?,
+        });
+    }
+    for (name, table) in tables {
+        let key = format!("factors.{}", name.as_ref());
+        for found in operands(table) {
+            named(source, found, points, &factors, &key)?;
+        }
+        if let Some(by) = &table.by {
+            setup_point(source, by, points, &format!("{key}.by"))?;
+        }
+        if let Some(path) = cycle(name.as_ref(), &factors) {
+            return Err(source.error(name.span(), key, Problem::Cycle(path)));
+        }
+    }
+    Ok(factors)
+}
+
+fn rule(
+    source: &Source<'_>,
+    name: &Spanned<String>,
+    table: &FactorTable,
+    key: &str,
+) -> Result<Rule, ProfileError> {
+    match (&table.product, &table.by, &table.cases) {
+        (Some(product), None, None) if table.otherwise.is_none() && !product.is_empty() => {
+            let operands = product.iter().map(|found| operand(source, found, key));
+            operands.collect::<Result<_, _>>().map(Rule::Product)
+        }
+        (None, Some(by), Some(cases)) if !cases.is_empty() => {
+            let mut by_code = BTreeMap::new();
+            for (written, found) in cases {
+                let number = code(source, written, &format!("{key}.cases"))?;
+                if by_code
+                    .insert(number, operand(source, found, key)?)
+                    .is_some()
+                {
+                    let problem = Problem::Conflict("this code has a case already");
+                    return Err(source.error(written.span(), format!("{key}.cases"), problem));
+                }
+            }
+            let otherwise = table.otherwise.as_ref();
+            Ok(Rule::Choice {
+                by: by.as_ref().clone(),
+                cases: by_code,
+                otherwise: otherwise
+                    .map(|found| operand(source, found, key))
+                    .transpose()?,
+            })
+        }
+        _ => {
+            let problem = Problem::Conflict(
+                "give product = [...], or by = a point and cases = { code = number }",
+            );
+            Err(source.error(name.span(), key, problem))
+        }
+    }
+}
+
+fn operands(table: &FactorTable) -> impl Iterator<Item = &Spanned<OperandKey>> {
+    let product = table.product.iter().flatten();
+    let cases = table.cases.iter().flat_map(BTreeMap::values);
+    product.chain(cases).chain(&table.otherwise)
+}
+
+/// Checks the name in an operand, if it is one.
+fn named(
+    source: &Source<'_>,
+    found: &Spanned<OperandKey>,
+    points: &[Point],
+    factors: &[Factor],
+    key: &str,
+) -> Result<(), ProfileError> {
+    match found.as_ref() {
+        OperandKey::Number(_) => Ok(()),
+        OperandKey::Name(name) => {
+            let name = Spanned::new(found.span(), name.trim_start_matches('-').to_owned());
+            factor_or_point(source, &name, points, factors, key)
+        }
+    }
+}
+
+fn factor_or_point(
+    source: &Source<'_>,
+    name: &Spanned<String>,
+    points: &[Point],
+    factors: &[Factor],
+    key: &str,
+) -> Result<(), ProfileError> {
+    if factors.iter().any(|factor| factor.name == *name.as_ref()) {
+        return Ok(());
+    }
+    if name.as_ref().parse::<f64>().is_ok() {
+        return Err(source.value(name, key, "a number, without quotes, or a name"));
+    }
+    if points.iter().all(|point| point.name != *name.as_ref()) {
+        return Err(unknown(source, name, "factor or point", key));
+    }
+    setup_point(source, name, points, key)
+}
+
+/// Checks that a point can be read for the sake of another, by itself.
+fn setup_point(
+    source: &Source<'_>,
+    name: &Spanned<String>,
+    points: &[Point],
+    key: &str,
+) -> Result<(), ProfileError> {
+    let Some(point) = points.iter().find(|point| point.name == *name.as_ref()) else {
+        return Err(unknown(source, name, "point", key));
+    };
+    let is_plain = point.kind.bounds().is_some()
+        && point.access.readable()
+        && point.only_with.is_none()
+        && point.constant_scale().is_some();
+    if is_plain {
+        return Ok(());
+    }
+    let expected = "an integer that can be read and whose scale is a number";
+    Err(source.value(name, key, expected))
+}
+
+/// The way from a factor back to itself, `a needs b needs a`.
+fn cycle(name: &str, factors: &[Factor]) -> Option<String> {
+    // Paths of names, the shortest first; none longer than there are factors.
+    let mut paths = vec![vec![name]];
+    for _ in factors {
+        let mut longer = Vec::new();
+        for path in paths {
+            let last = path.last().copied().unwrap_or_default();
+            let factor = factors.iter().find(|factor| factor.name == last);
+            for next in factor.map(Factor::names).unwrap_or_default() {
+                if next == name {
+                    return Some([path.as_slice(), &[next]].concat().join(" needs "));
+                }
+                // Another cycle is told of by its own factors.
+                if !path.contains(&next) {
+                    longer.push([path.as_slice(), &[next]].concat());
+                }
+            }
+        }
+        paths = longer;
+    }
+    None
+}
+
+/// Checks what the scales of points refer to.
+pub(super) fn references(
+    source: &Source<'_>,
+    rows: &[PointTable],
+    points: &[Point],
+    factors: &[Factor],
+) -> Result<(), ProfileError> {
+    for row in rows {
+        let key = |key: &str| format!("{}.{key}", row.name.as_ref());
+        if let Some(scale) = &row.scale
+            && let ScaleKey::Factor(name) = scale.as_ref()
+        {
+            let name = Spanned::new(scale.span(), name.clone());
+            factor_or_point(source, &name, points, factors, &key("scale"))?;
+        }
+        if let Some(span) = &row.span {
+            let SpanTable { low, high, .. } = span.as_ref();
+            named(source, low, points, factors, &key("span.low"))?;
+            named(source, high, points, factors, &key("span.high"))?;
+        }
+        if let Some(OnlyWithTable { point, codes }) = &row.only_with {
+            setup_point(source, point, points, &key("only_with.point"))?;
+            if codes.as_ref().is_empty() {
+                return Err(source.value(codes, &key("only_with.codes"), "a list of codes"));
+            }
+        }
+    }
+    Ok(())
+}
