@@ -22,10 +22,10 @@ fn whole(points: &[Point]) -> PlannedRead {
     let starts = points.iter().map(|point| point.range.start().get());
     let start = starts.min().expect("a point");
     let end = points.iter().map(|point| point.range.end()).max();
-    let end = u16::try_from(end.expect("a point")).expect("a low address");
+    let count = end.expect("a point") - u32::from(start);
     PlannedRead {
         function: ReadFunction::HoldingRegisters,
-        range: range(start, end - start),
+        range: range(start, u16::try_from(count).expect("a read")),
         points: (0..points.len()).collect(),
     }
 }
@@ -50,6 +50,20 @@ fn a_read_with_holes_falls_into_the_stretches_between_them() {
         parts(&[(0, 2), (2, 1), (4, 2), (9, 1)]),
         [(0, 3), (4, 2), (9, 1)]
     );
+}
+
+#[test]
+fn holes_are_what_no_point_names() {
+    let holes = |places: &[(u16, u16)]| {
+        let points = points(places);
+        whole(&points).holes(&points)
+    };
+    assert_eq!(
+        holes(&[(0, 4), (1, 1), (6, 2), (9, 1)]),
+        [range(4, 2), range(8, 1)]
+    );
+    assert_eq!(holes(&[(0, 2), (2, 1), (1, 4)]), []);
+    assert_eq!(holes(&[(0xFFF0, 2), (0xFFF8, 8)]), [range(0xFFF2, 6)]);
 }
 
 #[test]

@@ -82,16 +82,18 @@ fn interpret(
 ) -> Vec<Result<Value, Fault>> {
     let mut value = |(point, registers): (&Point, &Result<Vec<u16>, Fault>)| {
         let registers = registers.as_deref().map_err(|fault| *fault)?;
-        point.interpret(registers, Scales::none()).map_err(|missing| {
-            if missing == Missing::Mismatch {
-                troubles.push(Trouble::Impossible {
-                    point: point.name.clone(),
-                    kind: point.kind.to_string(),
-                    registers: registers.to_vec(),
-                });
-            }
-            Fault::from(missing)
-        })
+        point
+            .interpret(registers, Scales::none())
+            .map_err(|missing| {
+                if missing == Missing::Mismatch {
+                    troubles.push(Trouble::Impossible {
+                        point: point.name.clone(),
+                        kind: point.kind.to_string(),
+                        registers: registers.to_vec(),
+                    });
+                }
+                Fault::from(missing)
+            })
     };
     points.iter().zip(registers).map(&mut value).collect()
 }

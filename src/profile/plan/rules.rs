@@ -89,6 +89,11 @@ impl Rules {
         !matches!(self.holes, Holes::None)
     }
 
+    /// Whether all of these registers belong to ordinary points of the profile.
+    pub fn knows(&self, function: ReadFunction, range: RegisterRange) -> bool {
+        self.registers(function).known.hold(stretch(range))
+    }
+
     /// From now on no read has more registers than this.
     pub fn limit(&mut self, most: u16) {
         self.most = self.most.min(most);
@@ -124,10 +129,7 @@ impl Rules {
         function: ReadFunction,
         alone: impl IntoIterator<Item = RegisterRange>,
     ) -> Fence<'_> {
-        let registers = match self.table(function) {
-            ReadFunction::HoldingRegisters => &self.holding,
-            ReadFunction::InputRegisters => &self.input,
-        };
+        let registers = self.registers(function);
         let alone = alone.into_iter().map(stretch);
         let alone = alone.filter(|alone| !registers.whole.hold(*alone));
         Fence::new(
@@ -137,6 +139,13 @@ impl Rules {
             &registers.whole,
             registers.refused.clone(),
         )
+    }
+
+    fn registers(&self, function: ReadFunction) -> &Registers {
+        match self.table(function) {
+            ReadFunction::HoldingRegisters => &self.holding,
+            ReadFunction::InputRegisters => &self.input,
+        }
     }
 
     /// The function that stands for all that read the same registers.

@@ -1,11 +1,27 @@
 //! What to ask in place of a read that brought nothing.
 
 use super::{PlannedRead, Spot, read};
+use crate::codec::RegisterRange;
 use crate::profile::point::Point;
 
 impl PlannedRead {
-    /// Whether it covers registers that none of its points names. `points` is the set that the read
-    /// was planned for, here and below.
+    /// The holes in it: stretches of registers that none of its points names. `points` is the set
+    /// that the read was planned for, here and below.
+    pub fn holes(&self, points: &[Point]) -> Vec<RegisterRange> {
+        let mut holes = Vec::new();
+        let mut reach = self.range.start().get();
+        for spot in self.spots(points, &self.points) {
+            let start = spot.range.start().get();
+            let width = start.saturating_sub(reach);
+            // Next to each other they leave none.
+            holes.extend(RegisterRange::new(reach, width).ok());
+            // Past the last register lies nothing that could follow.
+            reach = u16::try_from(spot.range.end()).map_or(reach, |end| reach.max(end));
+        }
+        holes
+    }
+
+    /// Whether there are any.
     pub fn has_holes(&self, points: &[Point]) -> bool {
         runs(&self.spots(points, &self.points)).count() > 1
     }
