@@ -101,25 +101,41 @@ impl Memory {
             .retain(|lesson| !lesson.is_refuted_by(read.function, read.range, read.has_holes));
     }
 
-    /// The unit did not give this read, and then every part of it: what that teaches.
-    pub(super) fn learn_from_parts(&mut self, read: Shape, cause: Cause) -> Lesson {
-        let lesson = if read.has_holes {
-            Lesson::NoHoles
-        } else if read.range.count() <= self.largest {
+    /// The unit did not give this read, which has these holes, and then every part of it: what that
+    /// teaches.
+    pub(super) fn learn_from_parts(
+        &mut self,
+        read: Shape,
+        holes: &[RegisterRange],
+        cause: Cause,
+    ) -> Vec<Lesson> {
+        let Shape {
+            function, range, ..
+        } = read;
+        let are_known = holes.iter().all(|hole| self.rules.knows(function, *hole));
+        let lessons = if holes.is_empty() && range.count() <= self.largest {
             // So it is not the number of registers.
-            Lesson::Border(read.function, read.range)
+            vec![Lesson::Border(function, range)]
+        } else if holes.is_empty() {
+            vec![Lesson::Limit(self.largest)]
+        } else if are_known {
+            // Other meters of this profile have these registers; that says nothing of further ones.
+            let gone = holes.iter().map(|hole| Lesson::Refused(function, *hole));
+            gone.collect()
         } else {
-            Lesson::Limit(self.largest)
+            vec![Lesson::NoHoles]
         };
-        self.learn(lesson, cause);
-        lesson
+        for lesson in &lessons {
+            self.learn(*lesson, cause);
+        }
+        lessons
     }
 
     /// The unit does not give these registers, which are one point's.
-    pub(super) fn learn_of_one(&mut self, read: Shape, cause: Cause) -> Lesson {
+    pub(super) fn learn_of_one(&mut self, read: Shape, cause: Cause) -> Vec<Lesson> {
         let lesson = Lesson::Refused(read.function, read.range);
         self.learn(lesson, cause);
-        lesson
+        vec![lesson]
     }
 
     /// The registers of a setup point, once it has been read.
