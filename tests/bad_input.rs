@@ -97,7 +97,7 @@ fn an_unknown_meter_is_answered_with_the_list() {
     Program::new("read-registers -p sim: -a 17 --meter pmq")
         .code(2)
         .stderr(
-            "error: there is no meter 'pmq'; known are pqm\n\
+            "error: there is no meter 'pmq'; known are em21, em24, pm290, pqm\n\
              hint: `meterpoll meters list` shows them; a profile file is named by its path\n",
         )
         .run();
@@ -116,8 +116,8 @@ fn a_profile_that_does_not_parse_is_named_with_line_and_key() {
         .code(2)
         .stderr(format!(
             "error: {path}:7: a.adress: unknown key, expected \
-             name, address, type, order, scale, unit, about, access, range, labels, no_value, \
-             alone, function, verified, page\n"
+             name, address, repeat, type, order, scale, span, unit, about, access, range, labels, \
+             no_value, only_with, alone, function, verified, page\n"
         ))
         .run();
 }

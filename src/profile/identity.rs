@@ -15,7 +15,6 @@ pub struct Identity {
     pub law: Law,
     /// By how much of the greater side the two sides may differ: 0.02 is 2 %. Values read one after
     /// the other belong to a load that has moved on.
-    #[serde(with = "rust_decimal::serde::str")]
     pub tolerance: Decimal,
 }
 

@@ -12,7 +12,7 @@ use super::value::Missing;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Scaling {
     /// Multiplied with a number.
-    Times(#[serde(with = "rust_decimal::serde::str")] Decimal),
+    Times(Decimal),
     /// Multiplied with a [`Factor`] of the meter, by its name.
     TimesFactor(String),
     /// Multiplied with one number or another, by where the raw number lies.
@@ -37,7 +37,6 @@ pub struct Band {
     /// The highest.
     pub highest: i128,
     /// What they are multiplied with.
-    #[serde(with = "rust_decimal::serde::str")]
     pub factor: Decimal,
 }
 
@@ -45,7 +44,7 @@ pub struct Band {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Operand {
     /// The number itself.
-    Number(#[serde(with = "rust_decimal::serde::str")] Decimal),
+    Number(Decimal),
     /// That of a factor or of a point.
     Named {
         /// Its name.
