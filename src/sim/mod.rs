@@ -8,6 +8,7 @@
 //!   between runs, yet counters only ever rise, and every quantity agrees with the others.
 //! * [`history`]: what has added up since 2020, the demand, the lowest and the highest.
 //! * [`pqm`]: which of this stands behind which point, in whole steps of the registers.
+//! * [`model`]: what a kind of meter holds, and how it differs from the others.
 //! * [`meter`]: requests in, answers, exceptions or silence out.
 //! * [`line`](mod@line): the transport.
 
@@ -15,10 +16,12 @@ pub mod history;
 pub mod line;
 pub mod load;
 pub mod meter;
+pub mod model;
 pub mod pqm;
 pub mod wave;
 
 pub use line::SimulatedLine;
 pub use load::Load;
-pub use meter::{Content, Measured, Meter, Model};
+pub use meter::Meter;
+pub use model::{Content, Measured, Model};
 pub use pqm::Pqm;

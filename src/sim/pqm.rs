@@ -17,12 +17,12 @@ use self::table::{DEMANDS, QUANTITIES, Statistic};
 use self::words::{counter, date, date_of, rounded, text, time_of};
 use super::history::{Metered, Sums};
 use super::load::{Load, Values};
-use super::meter::{Content, Measured, Model};
+use super::model::{Content, Measured, Model};
 use super::wave::{Moment, Random};
 
 /// What functions 03 and 04 can read: product information, user map data, user map index, actual
 /// values, setpoints. The command area behind the first is write only.
-const READABLE: [RangeInclusive<u16>; 5] = [
+const AREAS: [RangeInclusive<u16>; 5] = [
     0x0000..=0x007F,
     0x0100..=0x017F,
     0x0180..=0x01FF,
@@ -59,12 +59,13 @@ impl Pqm {
 }
 
 impl Model for Pqm {
-    fn readable(&self) -> &[RangeInclusive<u16>] {
-        &READABLE
+    fn areas(&self) -> &[RangeInclusive<u16>] {
+        &AREAS
     }
 
-    fn status(&self, _now: Timestamp) -> u8 {
-        0
+    /// Zeros alone (manual page 191).
+    fn echoes(&self, word: u16) -> bool {
+        word == 0
     }
 
     fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_> {

@@ -3,7 +3,7 @@
 use super::words::{date_of, rounded, time_of};
 use crate::sim::history::{Extremes, Metered};
 use crate::sim::load::Quantity;
-use crate::sim::meter::Content;
+use crate::sim::model::Content;
 
 /// Steps of the registers, in the units of [`Quantity`].
 const WHOLE: f64 = 1.0;

@@ -4,7 +4,7 @@ use jiff::Timestamp;
 use jiff::civil::{Date, DateTime};
 use jiff::tz::TimeZone;
 
-use crate::sim::meter::Content;
+use crate::sim::model::Content;
 
 /// The nearest whole step.
 #[expect(
