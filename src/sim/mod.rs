@@ -17,11 +17,13 @@ pub mod line;
 pub mod load;
 pub mod meter;
 pub mod model;
+mod powers;
 pub mod pqm;
 pub mod wave;
+mod words;
 
 pub use line::SimulatedLine;
-pub use load::Load;
+pub use load::{Installation, Load};
 pub use meter::Meter;
 pub use model::{Content, Measured, Model};
 pub use pqm::Pqm;

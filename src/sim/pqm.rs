@@ -3,7 +3,6 @@
 //! Names are those of the built-in meter `pqm`. Register facts follow the PQM manual, edition
 //! 3.6x, chapter 7: areas of the memory map pages 197 to 251, formats F22 to F25 page 257.
 
-mod powers;
 mod table;
 mod words;
 
@@ -12,13 +11,14 @@ use std::ops::RangeInclusive;
 
 use jiff::{Timestamp, civil};
 
-use self::powers::Powers;
-use self::table::{DEMANDS, QUANTITIES, Statistic};
-use self::words::{counter, date, date_of, rounded, text, time_of};
+use self::table::{DEMANDS, HUNDREDTH, QUANTITIES, Statistic, TEN_WATTS};
+use self::words::{date, date_of, time_of};
 use super::history::{Metered, Sums};
-use super::load::{Load, Values};
+use super::load::{Installation, Load, Values};
 use super::model::{Content, Measured, Model};
+use super::powers::Powers;
 use super::wave::{Moment, Random};
+use super::words::{counter, rounded, text};
 
 /// What functions 03 and 04 can read: product information, user map data, user map index, actual
 /// values, setpoints. The command area behind the first is write only.
@@ -52,7 +52,7 @@ impl Pqm {
         // A row of numbers other than the load's.
         let number = Random::new(!seed).next() % 10_000_000;
         Self {
-            load: Load::new(seed),
+            load: Load::new(Installation::FACTORY, seed),
             serial_number: format!("C{number:07}"),
         }
     }
@@ -76,7 +76,7 @@ impl Model for Pqm {
             now,
             moment,
             values,
-            powers: Powers::of(&values),
+            powers: Powers::of(&values, TEN_WATTS, HUNDREDTH),
             energy: OnceCell::new(),
             demand: OnceCell::new(),
         })
@@ -117,6 +117,7 @@ impl Reading<'_> {
             "mod_file_1" | "mod_file_2" | "mod_file_3" | "mod_file_4" | "mod_file_5" => {
                 Content::Number(0)
             }
+            // Eight characters (F10).
             "serial_number" => text(&self.pqm.serial_number),
             "manufacture_date" => date(civil::date(2006, 3, 14)),
             "calibration_date" => date(civil::date(2006, 3, 21)),
