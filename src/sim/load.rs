@@ -163,31 +163,25 @@ impl Load {
         // Amplitudes, here those of the factory, add up to less than the ranges in `Quantity`. Cycles
         // a week: 7 is a day, 168 an hour; the fastest, 20 minutes, is still slow beside the steps of
         // `history`.
-        let wave = |mean: f64, scale: f64, sines: &[(f64, u16)], random: &mut Random| {
-            let sines: Vec<_> = sines
-                .iter()
-                .map(|(amplitude, cycles)| (amplitude * scale, *cycles))
-                .collect();
-            Wave::new(mean, &sines, random)
-        };
         Self {
             installation,
-            frequency: wave(
+            frequency: Wave::new(
                 installation.frequency,
                 1.0,
                 &[(0.018, 61), (0.010, 307)],
                 random,
             ),
-            network: wave(installation.voltage, volts, &[(1.5, 7)], random),
-            work: wave(
+            network: Wave::new(installation.voltage, volts, &[(1.5, 7)], random),
+            work: Wave::new(
                 installation.current,
                 amperes,
                 &[(30.0, 7), (12.0, 15), (8.0, 151)],
                 random,
             ),
-            voltages: [(); 3].map(|()| wave(0.0, volts, &[(1.0, 211), (0.6, 503)], random)),
-            currents: [(); 3].map(|()| wave(0.0, amperes, &[(15.0, 97), (7.0, 331)], random)),
-            power_factors: [(); 3].map(|()| wave(0.94, 1.0, &[(0.020, 61), (0.012, 271)], random)),
+            voltages: [(); 3].map(|()| Wave::new(0.0, volts, &[(1.0, 211), (0.6, 503)], random)),
+            currents: [(); 3].map(|()| Wave::new(0.0, amperes, &[(15.0, 97), (7.0, 331)], random)),
+            power_factors: [(); 3]
+                .map(|()| Wave::new(0.94, 1.0, &[(0.020, 61), (0.012, 271)], random)),
             history: OnceLock::new(),
         }
     }

@@ -85,13 +85,13 @@ struct Sine {
 }
 
 impl Wave {
-    /// A signal around `mean`; each sine is an amplitude and how often it repeats in a week, a
-    /// whole number. Their phases come from `random`.
-    pub fn new(mean: f64, sines: &[(f64, u16)], random: &mut Random) -> Self {
+    /// A signal around `mean`; each sine is an amplitude in parts of `scale` and how often it repeats
+    /// in a week, a whole number. Their phases come from `random`.
+    pub fn new(mean: f64, scale: f64, sines: &[(f64, u16)], random: &mut Random) -> Self {
         let sines = sines
             .iter()
             .map(|(amplitude, cycles)| Sine {
-                amplitude: *amplitude,
+                amplitude: amplitude * scale,
                 speed: TAU * f64::from(*cycles) / f64::from(PERIOD_SECONDS),
                 phase: TAU * random.fraction(),
             })
