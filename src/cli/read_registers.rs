@@ -11,7 +11,8 @@ Examples:
   meterpoll read-registers -p /dev/ttyUSB0 -a 17 --meter pqm 'current_*'
   meterpoll read-registers -p /dev/ttyUSB0 -a 1-5 --meter pqm @energy -f csv
   meterpoll read-registers -p /dev/ttyUSB0 -b 19200 -P even -a 1 0x0000+10
-  meterpoll read-registers -p /dev/ttyUSB0 -a 1 '0x11F:u32/CDAB*0.1=kWh'";
+  meterpoll read-registers -p /dev/ttyUSB0 -a 1 '0x11F:u32/CDAB*0.1=kWh'
+  meterpoll read-registers -b 19200 -a 17 --meter pqm @power --plan";
 
 /// Arguments of `read-registers`.
 #[derive(Debug, Args)]
@@ -61,6 +62,9 @@ Always: registers by protocol address, from 0:
     /// Print the requests in hex and send nothing
     #[arg(long)]
     pub dry_run: bool,
+    /// Print the requests with the registers, points and time of each, and send nothing
+    #[arg(long, conflicts_with = "dry_run")]
+    pub plan: bool,
     /// The line.
     #[command(flatten)]
     pub line: LineArguments,

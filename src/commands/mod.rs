@@ -10,6 +10,7 @@ mod open_line;
 mod ports;
 mod read_registers;
 mod report;
+mod show_plan;
 mod signals;
 
 use std::ffi::OsString;

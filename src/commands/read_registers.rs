@@ -5,14 +5,15 @@ use std::io::{self, IsTerminal, Write};
 
 use super::open_line::LinePlan;
 use super::report::{self, Place, Report};
+use super::show_plan::{self, ShownPlan};
 use super::signals::Stop;
 use super::{CommandError, ExitCode, print};
 use crate::cli::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
 use crate::client::{Client, Patience};
-use crate::codec::{FunctionCode, ReadFunction, Unit, rtu};
+use crate::codec::{FunctionCode, ReadFunction, Unit};
 use crate::output::csv::{CsvStyle, WIDE_COLUMNS};
 use crate::output::{Heading, Json, JsonLines, LongCsv, Sink, Table, WideCsv};
-use crate::profile::plan::Cost;
+use crate::profile::plan::{Cost, Rules};
 use crate::profile::selector::{Numbering, Reading, select};
 use crate::profile::{Limits, Plan, Point, Profile, find};
 use crate::readings::{Fault, Row, take};
@@ -31,14 +32,25 @@ pub(super) fn run(
     let units = units(arguments, &limits)?;
     let points = points(arguments, profile.as_ref())?;
     let function = function(arguments, &limits);
-    let plan = Plan::new(
-        &points,
-        function,
-        &limits,
-        Cost::new(line.settings, &limits),
-    );
+    let rules = profile
+        .as_ref()
+        .map_or_else(|| Rules::new(&limits), Rules::of);
+    let patience = line.patience(&limits);
+    let cost = Cost::new(line.settings, patience.pause, limits.typical_answer);
+    let plan = Plan::new(&points, function, &rules, cost);
     if arguments.dry_run {
-        return print(frames(&units, &plan).as_bytes());
+        return print(show_plan::frames(&units, &plan).as_bytes());
+    }
+    if arguments.plan {
+        let shown = ShownPlan {
+            units: &units,
+            points: &points,
+            plan: &plan,
+            settings: line.settings,
+            pause: patience.pause,
+            cost,
+        };
+        return print(shown.to_string().as_bytes());
     }
 
     let mut client = line.open()?;
@@ -49,7 +61,7 @@ pub(super) fn run(
         meter: profile.as_ref().map_or("", |profile| profile.name.as_str()),
         points: &points,
         plan: &plan,
-        patience: line.patience(&limits),
+        patience,
         line: &line.name(),
         stop: &stop,
     };
@@ -130,6 +142,11 @@ fn effects(arguments: &ReadRegisters) -> Result<(), CommandError> {
     let is_csv = arguments.format == FormatChoice::Csv;
     let no_effect = |option, format| Err(CommandError::NoEffect { option, format });
     match arguments.layout {
+        Some(_) if arguments.plan => no_effect("--layout", "readings"),
+        _ if arguments.plan && arguments.units => no_effect("--units", "readings"),
+        _ if arguments.plan && arguments.format != FormatChoice::Table => {
+            no_effect("--format", "readings")
+        }
         Some(_) if !is_csv => no_effect("--layout", "--format csv"),
         Some(Layout::Long) if arguments.units => no_effect("--units", "wide CSV"),
         _ if arguments.units && !is_csv => no_effect("--units", "--format csv"),
@@ -205,18 +222,6 @@ fn function(arguments: &ReadRegisters, limits: &Limits) -> ReadFunction {
     typed_function(arguments)
         .filter(|_| limits.interchangeable_reads)
         .unwrap_or_else(|| limits.read_function())
-}
-
-/// The requests as they would go out, one a line.
-fn frames(units: &[Unit], plan: &Plan) -> String {
-    let requests = units.iter().flat_map(|unit| {
-        plan.reads
-            .iter()
-            .map(|read| rtu::encode_request(*unit, &read.request()))
-    });
-    requests
-        .flat_map(|frame| [frame.to_string(), "\n".to_owned()])
-        .collect()
 }
 
 fn sink(arguments: &ReadRegisters, heading: Heading) -> Box<dyn Sink> {

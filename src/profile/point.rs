@@ -138,6 +138,24 @@ impl Point {
         }
     }
 
+    /// The difference that one raw step makes, on a meter that is set up like this; 0 where steps
+    /// are not known or too small to tell.
+    pub fn step(&self, scales: Scales<'_>) -> f64 {
+        let step = match (&self.scaling, self.kind.is_integer()) {
+            (_, false) => None,
+            (Scaling::Times(scale), true) => Some(*scale),
+            (Scaling::TimesFactor(name), true) => scales.named(name).ok(),
+            (Scaling::TimesByRaw(bands), true) => bands.iter().map(|band| band.factor).max(),
+            (Scaling::Span { full, low, high }, true) => scales
+                .operand(high)
+                .ok()
+                .zip(scales.operand(low).ok())
+                .and_then(|(high, low)| high.checked_sub(low)?.checked_div((*full).into())),
+        };
+        step.and_then(|step| step.abs().to_f64())
+            .unwrap_or_default()
+    }
+
     /// What the registers of this point mean on a meter that is set up like this.
     ///
     /// # Errors

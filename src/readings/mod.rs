@@ -5,6 +5,7 @@
 
 pub mod fault;
 pub mod take;
+pub mod verify;
 
 use jiff::Timestamp;
 

@@ -1,5 +1,10 @@
 /* A meter that answers at once, on a pty of its own, for measuring clients.
  *
+ * usage: responder [BAUD]
+ *
+ * With BAUD, up to 19200, it keeps the pace of a line of that speed at 8N1: the last byte of an
+ * answer comes when request, 3.5 characters of silence and answer have had their time.
+ *
  * Prints the path of the pty's slave and serves until it is killed: function
  * 03 of unit 1, register a holds a * 7 + 3 (16 bits). The answer to a request
  * is built once and sent again, in one write, as long as the same request
@@ -13,6 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <termios.h>
+#include <time.h>
 #include <unistd.h>
 
 #define REQUEST_LENGTH 8
@@ -54,8 +60,19 @@ static size_t build_answer(const uint8_t *request, uint8_t *answer)
     return length;
 }
 
-int main(void)
+/* Sleeps until this many bits at `baud` after `since`. */
+static void pace(struct timespec since, long bits, long baud)
 {
+    long long nanoseconds = since.tv_nsec + bits * 1000000000LL / baud;
+    since.tv_sec += nanoseconds / 1000000000LL;
+    since.tv_nsec = nanoseconds % 1000000000LL;
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &since, NULL) != 0)
+        ;
+}
+
+int main(int argc, char **argv)
+{
+    long baud = argc > 1 ? atol(argv[1]) : 0;
     int master = posix_openpt(O_RDWR | O_NOCTTY);
     if (master == -1 || grantpt(master) == -1 || unlockpt(master) == -1) {
         perror("posix_openpt");
@@ -93,10 +110,15 @@ int main(void)
         if (received < REQUEST_LENGTH)
             continue;
         received = 0;
+        struct timespec heard;
+        clock_gettime(CLOCK_MONOTONIC, &heard);
         if (memcmp(request, known, REQUEST_LENGTH) != 0) {
             memcpy(known, request, REQUEST_LENGTH);
             answer_length = build_answer(request, answer);
         }
+        /* 10 bits a character, 35 of silence. */
+        if (answer_length > 0 && baud > 0)
+            pace(heard, 10 * (REQUEST_LENGTH + (long)answer_length) + 35, baud);
         if (answer_length > 0 && write(master, answer, answer_length) != (ssize_t)answer_length) {
             perror("write");
             return 1;

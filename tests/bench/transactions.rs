@@ -1,6 +1,6 @@
 //! What the program itself costs, without the silences of a line: a read of ten registers over a
-//! pty beside the bare write and read of the same bytes, and unpacking a built-in meter. Takes the path of a pty whose other end answers at once,
-//! as `tests/bench/run` provides.
+//! pty beside the bare write and read of the same bytes. Takes the path of a pty whose other end
+//! answers at once, as `tests/bench/run` provides.
 
 use std::fs::OpenOptions;
 use std::io::{Read, Write};
@@ -9,7 +9,6 @@ use std::time::{Duration, Instant};
 
 use meterpoll::client::{Client, Echo, Patience};
 use meterpoll::codec::{ReadFunction, RegisterRange, Request, Unit, UnitRange};
-use meterpoll::profile::builtin;
 use meterpoll::transport::serial::Serial;
 use meterpoll::transport::{Line, LineSettings, SystemClock, Timing};
 
@@ -17,12 +16,6 @@ const TRANSACTIONS: usize = 20_000;
 const WARM_UP: usize = 200;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    for meter in builtin::all() {
-        let times = measure(2000, || {
-            std::hint::black_box(meter.profile());
-        });
-        println!("unpack meter {:<8} {}", meter.name, summary(times));
-    }
     let Some(path) = std::env::args().nth(1).filter(|path| path.starts_with('/')) else {
         println!("transactions: skipped, no pty given");
         return Ok(());
@@ -42,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         range: RegisterRange::new(0, 10)?,
     };
     let mut failed = 0;
-    let times = measure(TRANSACTIONS, || {
+    let times = measure(|| {
         failed += usize::from(client.request(unit, &request, Patience::default()).is_err());
     });
     println!("read 10 registers     {}, {failed} failed", summary(times));
@@ -55,7 +48,7 @@ fn bare(path: &str) -> Result<Vec<Duration>, Box<dyn std::error::Error>> {
     let mut answer = [0; 25];
     let mut port = OpenOptions::new().read(true).write(true).open(path)?;
     let mut result = Ok(());
-    let times = measure(TRANSACTIONS, || {
+    let times = measure(|| {
         let exchange = port
             .write_all(&request)
             .and_then(|()| port.read_exact(&mut answer));
@@ -67,12 +60,12 @@ fn bare(path: &str) -> Result<Vec<Duration>, Box<dyn std::error::Error>> {
     Ok(times)
 }
 
-/// Times of `count` runs after some to warm up.
-fn measure(count: usize, mut run: impl FnMut()) -> Vec<Duration> {
+/// Times of many runs after some to warm up.
+fn measure(mut run: impl FnMut()) -> Vec<Duration> {
     for _ in 0..WARM_UP {
         run();
     }
-    (0..count)
+    (0..TRANSACTIONS)
         .map(|_| {
             let start = Instant::now();
             run();
