@@ -1,8 +1,13 @@
 //! What the simulated PQM shows: quantities that agree, counters that rise, values that move.
 
-use jiff::{SignedDuration, Timestamp};
-use meterpoll::sim::{Content, Measured, Model, Pqm};
+use jiff::SignedDuration;
+use meterpoll::sim::{Model, Pqm};
 use proptest::prelude::*;
+
+#[path = "support/simulated.rs"]
+mod simulated;
+
+use simulated::{at, float, mean_before, moment_of_2026, number, raw, seconds, words};
 
 /// The points that have a minimum and a maximum.
 const MEASURED: [&str; 32] = [
@@ -58,53 +63,6 @@ const COUNTERS: [&str; 6] = [
     "energy_apparent",
     "energy_cost_total",
 ];
-
-fn at(time: &str) -> Timestamp {
-    time.parse().unwrap()
-}
-
-fn seconds(seconds: i64) -> SignedDuration {
-    SignedDuration::from_secs(seconds)
-}
-
-/// The raw integer of a point at one instant.
-fn number(measured: &dyn Measured, point: &str) -> i128 {
-    match measured.content(point) {
-        Some(Content::Number(number)) => number,
-        other => panic!("{point} holds {other:?}"),
-    }
-}
-
-fn raw(pqm: &Pqm, point: &str, now: Timestamp) -> i128 {
-    number(pqm.measure(now).as_ref(), point)
-}
-
-/// The registers of a point that is not a number.
-fn words(pqm: &Pqm, point: &str, now: Timestamp) -> Vec<u16> {
-    match pqm.measure(now).content(point) {
-        Some(Content::Words(words)) => words,
-        other => panic!("{point} holds {other:?}"),
-    }
-}
-
-fn float(number: i128) -> f64 {
-    f64::from(i32::try_from(number).unwrap())
-}
-
-/// The mean raw value of a point over the `span` seconds that end at `end`.
-fn mean_before(pqm: &Pqm, point: &str, end: Timestamp, span: i64) -> f64 {
-    let step = span / 300;
-    let sum: f64 = (0..300)
-        .map(|sample| float(raw(pqm, point, end - seconds(step * sample + step / 2))))
-        .sum();
-    sum / 300.0
-}
-
-/// Any moment of a year, to the millisecond.
-fn moment_of_2026() -> impl Strategy<Value = Timestamp> {
-    (0_i64..365 * 86_400_000)
-        .prop_map(|moment| at("2026-01-01T00:00:00Z") + SignedDuration::from_millis(moment))
-}
 
 proptest! {
     #[test]

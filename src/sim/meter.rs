@@ -9,6 +9,7 @@ use jiff::Timestamp;
 
 use self::answering::Refusal;
 use super::model::Model;
+use super::pm290::Pm290;
 use super::pqm::Pqm;
 use crate::codec::{Frame, FunctionCode, Reply, Unit, rtu};
 use crate::profile::{Profile, builtin};
@@ -44,6 +45,11 @@ impl Meter {
     /// A PQM with the built-in profile; its load comes from `seed`.
     pub fn pqm(unit: Unit, seed: u64) -> Self {
         Self::builtin(unit, "pqm", move || Box::new(Pqm::new(seed)))
+    }
+
+    /// A PM290 with the built-in profile; its load comes from `seed`.
+    pub fn pm290(unit: Unit, seed: u64) -> Self {
+        Self::builtin(unit, "pm290", move || Box::new(Pm290::new(seed)))
     }
 
     /// # Panics

@@ -134,7 +134,8 @@ impl Reading<'_> {
     }
 
     fn energy(&self, point: &str) -> Option<Content> {
-        let of = |metered| counter(self.sums().0.get(metered) / KILOWATT_HOUR);
+        let whole = |value| Content::Number(counter(value));
+        let of = |metered| whole(self.sums().0.get(metered) / KILOWATT_HOUR);
         let real = || self.sums().0.get(Metered::RealPower) / KILOWATT_HOUR;
         let day = || real() - self.sums().1.get(Metered::RealPower) / KILOWATT_HOUR;
         Some(match point {
@@ -143,9 +144,9 @@ impl Reading<'_> {
             "energy_apparent" => of(Metered::ApparentPower),
             // The load takes real power and lags, always.
             "energy_real_neg" | "energy_reactive_neg" => Content::Number(0),
-            "energy_real_24h" => counter(day()),
-            "energy_cost_total" => counter(real() * CENTS_PER_KILOWATT_HOUR),
-            "energy_cost_per_day" => counter(day() * CENTS_PER_KILOWATT_HOUR),
+            "energy_real_24h" => whole(day()),
+            "energy_cost_total" => whole(real() * CENTS_PER_KILOWATT_HOUR),
+            "energy_cost_per_day" => whole(day() * CENTS_PER_KILOWATT_HOUR),
             _ => return None,
         })
     }

@@ -12,8 +12,8 @@ pub(super) fn rounded(value: f64) -> i128 {
 }
 
 /// A counter shows whole units that are full, and starts at 0 in 2020.
-pub(super) fn counter(value: f64) -> Content {
-    Content::Number(rounded(value.floor().max(0.0)))
+pub(super) fn counter(value: f64) -> i128 {
+    rounded(value.floor().max(0.0))
 }
 
 /// Two characters a register, the first in the high byte; 0 where the last register has none left.
