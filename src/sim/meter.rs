@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 use jiff::Timestamp;
 
 use self::answering::Refusal;
+use super::em2x::Em2x;
 use super::model::Model;
 use super::pm290::Pm290;
 use super::pqm::Pqm;
@@ -50,6 +51,16 @@ impl Meter {
     /// A PM290 with the built-in profile; its load comes from `seed`.
     pub fn pm290(unit: Unit, seed: u64) -> Self {
         Self::builtin(unit, "pm290", move || Box::new(Pm290::new(seed)))
+    }
+
+    /// An EM21 with the built-in profile; its load comes from `seed`.
+    pub fn em21(unit: Unit, seed: u64) -> Self {
+        Self::builtin(unit, "em21", move || Box::new(Em2x::em21(unit, seed)))
+    }
+
+    /// An EM24-DIN with the built-in profile; its load comes from `seed`.
+    pub fn em24(unit: Unit, seed: u64) -> Self {
+        Self::builtin(unit, "em24", move || Box::new(Em2x::em24(unit, seed)))
     }
 
     /// # Panics

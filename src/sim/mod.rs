@@ -12,6 +12,7 @@
 //! * [`meter`]: requests in, answers, exceptions or silence out.
 //! * [`line`](mod@line): the transport.
 
+pub mod em2x;
 pub mod history;
 pub mod line;
 pub mod load;
@@ -23,6 +24,7 @@ pub mod pqm;
 pub mod wave;
 mod words;
 
+pub use em2x::Em2x;
 pub use line::SimulatedLine;
 pub use load::{Installation, Load};
 pub use meter::Meter;
