@@ -21,6 +21,7 @@ mod profile {
     pub mod identity;
     pub mod load;
     pub mod model;
+    pub mod packed;
     pub mod point;
     pub mod scaling;
     pub mod setup;
@@ -47,14 +48,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         let path = file.path();
         let profile = profile::load::load(&path.display().to_string(), &fs::read_to_string(&path)?)
             .map_err(|error| error.to_string())?;
-        let name = &profile.name;
-        if path.file_stem().and_then(|stem| stem.to_str()) != Some(name) {
+        let name = profile.name.clone();
+        if path.file_stem().and_then(|stem| stem.to_str()) != Some(&name) {
             return Err(format!("{}: the meter's name is {name}", path.display()).into());
         }
         let packed = format!("{name}.meter");
         fs::write(
             Path::new(&out).join(&packed),
-            postcard::to_stdvec(&profile)?,
+            postcard::to_stdvec(&profile::packed::Packed::pack(profile))?,
         )?;
         writeln!(
             list,

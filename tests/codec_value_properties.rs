@@ -1,6 +1,6 @@
 //! What holds for every value in registers, tried on random ones.
 
-use meterpoll::codec::value::{ByteOrder, Raw, RegisterType, decode, encode_integer};
+use meterpoll::codec::value::{ByteOrder, Raw, RegisterType, decode, encode, encode_integer};
 use proptest::prelude::*;
 use proptest::sample::select;
 
@@ -59,7 +59,12 @@ proptest! {
                 prop_assert_eq!(encoded.as_deref(), Some(registers));
             }
             Ok(Raw::Text(text)) => prop_assert!(text.is_ascii()),
-            Ok(_) => prop_assert_eq!(length, takes),
+            // Any bits a float has are kept, those of NaN included.
+            Ok(other) => {
+                prop_assert_eq!(length, takes);
+                let encoded = encode(kind, order, &other);
+                prop_assert_eq!(encoded.as_deref(), Some(registers));
+            }
             Err(_) => {}
         }
     }
@@ -152,5 +157,93 @@ fn the_ends_of_every_integer_type_survive_their_registers() {
                 }
             }
         }
+    }
+}
+
+/// The ends and the middle of what a type holds that is no integer.
+fn others(kind: RegisterType) -> Vec<Raw> {
+    let text = |text: &str| Raw::Text(text.to_owned());
+    match kind {
+        RegisterType::F32 => [f32::MIN, -1.5, -0.0, 0.0, f32::MIN_POSITIVE, 1.5, f32::MAX]
+            .map(Raw::Single)
+            .to_vec(),
+        RegisterType::F64 => [f64::MIN, -1.5, -0.0, 0.0, f64::MIN_POSITIVE, 1.5, f64::MAX]
+            .map(Raw::Double)
+            .to_vec(),
+        RegisterType::Hex | RegisterType::Bits => [0, 1, 0x8000, 0xFFFF].map(Raw::Word).to_vec(),
+        RegisterType::Ascii(_) => vec![text(""), text("C0000017"), text("13 characters")],
+        RegisterType::Letter => vec![text("A"), text("D"), text("Z")],
+        RegisterType::Time => [
+            (0, 0, 0, 0),
+            (13, 27, 10, 15_000_000),
+            (23, 59, 59, 999_000_000),
+        ]
+        .map(|(hour, minute, second, part)| {
+            Raw::Time(jiff::civil::Time::new(hour, minute, second, part).unwrap())
+        })
+        .to_vec(),
+        RegisterType::Date => [(1, 1, 1), (1997, 10, 29), (2024, 2, 29), (9999, 12, 31)]
+            .map(|(year, month, day)| Raw::Date(jiff::civil::date(year, month, day)))
+            .to_vec(),
+        _ => Vec::new(),
+    }
+}
+
+#[test]
+fn floats_texts_times_and_dates_survive_their_registers() {
+    let mut count = 0;
+    for kind in TYPES {
+        for (order, value) in ORDERS
+            .iter()
+            .flat_map(|order| others(kind).into_iter().map(move |value| (*order, value)))
+        {
+            let registers = encode(kind, order, &value).unwrap();
+            assert_eq!(registers.len(), usize::from(kind.registers()));
+            assert_eq!(decode(kind, order, &registers), Ok(value), "{kind} {order}");
+            count += 1;
+        }
+    }
+    assert_eq!(count, 4 * 35);
+}
+
+#[test]
+fn the_clock_of_the_pqm_manual_is_encoded_as_it_is_printed() {
+    // Table 7-9: 13:27, 10.015 s into the minute, October 29 1997.
+    let time = Raw::Time(jiff::civil::Time::new(13, 27, 10, 15_000_000).unwrap());
+    let date = Raw::Date(jiff::civil::date(1997, 10, 29));
+    assert_eq!(
+        encode(RegisterType::Time, ByteOrder::Abcd, &time),
+        Some(vec![0x0D1B, 0x271F])
+    );
+    assert_eq!(
+        encode(RegisterType::Date, ByteOrder::Abcd, &date),
+        Some(vec![0x0A1D, 0x07CD])
+    );
+}
+
+#[test]
+fn what_a_type_does_not_hold_is_not_encoded() {
+    let text = |text: &str| Raw::Text(text.to_owned());
+    let time = |part| Raw::Time(jiff::civil::Time::new(1, 2, 3, part).unwrap());
+    for (kind, value) in [
+        (RegisterType::F32, Raw::Double(1.0)),
+        (RegisterType::F64, Raw::Integer(1)),
+        (RegisterType::U16, Raw::Single(1.0)),
+        (RegisterType::U16, Raw::Integer(-1)),
+        (RegisterType::Hex, Raw::Integer(1)),
+        (RegisterType::Letter, text("a")),
+        (RegisterType::Letter, text("AB")),
+        (RegisterType::Letter, Raw::Integer(1)),
+        (RegisterType::Ascii(3), text("four")),
+        (RegisterType::Ascii(3), text("\u{e9}")),
+        (RegisterType::Time, time(1000)),
+        (RegisterType::Date, Raw::Date(jiff::civil::date(0, 1, 1))),
+        (RegisterType::Date, Raw::Date(jiff::civil::date(-5, 1, 1))),
+    ] {
+        assert_eq!(
+            encode(kind, ByteOrder::Abcd, &value),
+            None,
+            "{kind}: {value:?}"
+        );
     }
 }

@@ -55,13 +55,30 @@ const DEMANDS: [&str; 7] = [
     "demand_apparent",
 ];
 
-const COUNTERS: [&str; 6] = [
+/// What has a distortion, by the end of its point's name.
+const DISTORTED: [&str; 10] = [
+    "current_a",
+    "current_b",
+    "current_c",
+    "current_n",
+    "van",
+    "vbn",
+    "vcn",
+    "vab",
+    "vbc",
+    "vca",
+];
+
+const COUNTERS: [&str; 9] = [
     "energy_real_pos",
     "energy_real_neg",
     "energy_reactive_pos",
     "energy_reactive_neg",
     "energy_apparent",
     "energy_cost_total",
+    "pulse_input_1",
+    "pulse_input_2",
+    "pulse_input_total",
 ];
 
 proptest! {
@@ -174,6 +191,11 @@ proptest! {
                 let highest = raw(&format!("{point}_max"));
                 prop_assert!(value <= highest, "{point} is {value}, highest {highest}");
             }
+            for distorted in DISTORTED {
+                let value = raw(&format!("thd_{distorted}"));
+                let highest = raw(&format!("thd_{distorted}_max"));
+                prop_assert!((1..=highest).contains(&value), "THD of {distorted} is {value}");
+            }
         }
     }
 
@@ -285,7 +307,8 @@ fn time_stamps_of_extremes_are_fixed_and_past() {
         .iter()
         .flat_map(|point| [format!("{point}_min"), format!("{point}_max")]);
     let demands = DEMANDS.iter().map(|point| format!("{point}_max"));
-    for extreme in extremes.chain(demands) {
+    let distortions = DISTORTED.iter().map(|end| format!("thd_{end}_max"));
+    for extreme in extremes.chain(demands).chain(distortions) {
         for part in ["time", "date"] {
             let point = format!("{extreme}_{part}");
             assert_eq!(
@@ -381,6 +404,11 @@ fn a_point_the_meter_does_not_have_holds_nothing() {
         "current_a_minimum",
         "clock_time_min",
         "demand",
+        "thd_",
+        "thd_vax",
+        "thdf_d",
+        "event_",
+        "log1_",
     ] {
         assert_eq!(Pqm::new(1).measure(now).content(point), None, "{point}");
     }

@@ -1,10 +1,14 @@
 //! Registers as values: numbers in every width and byte order, text, dates and times.
 
+mod encode;
+
 use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+pub use encode::{encode, encode_integer};
 
 /// How the bytes of a value lie in its registers, named by where the bytes A (most significant)
 /// to D of a 32-bit value are found. Wider and narrower values follow the same two choices.
@@ -382,28 +386,4 @@ fn shown(byte: u8) -> Vec<char> {
     } else {
         format!("\\x{byte:02X}").chars().collect()
     }
-}
-
-/// Writes an integer into registers; the inverse of [`decode`] for integers, hex and bits, and
-/// 1 to 26 for a letter. `None` when the type is not an integer or does not hold the number.
-pub fn encode_integer(kind: RegisterType, order: ByteOrder, number: i128) -> Option<Vec<u16>> {
-    let (lowest, highest) = kind.bounds()?;
-    if !(lowest..=highest).contains(&number) {
-        return None;
-    }
-    let bits = if kind == RegisterType::Mod10000 {
-        ((number / 10_000) << 16) | (number % 10_000)
-    } else {
-        number
-    };
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "taking each word's low 16 bits is the point"
-    )]
-    let words: Vec<u16> = (0..kind.registers())
-        .rev()
-        .map(|word| (bits >> (16 * word)) as u16)
-        .collect();
-    Some(order.arrange(&words))
 }

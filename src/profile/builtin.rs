@@ -5,6 +5,7 @@
 //! costs a run a small part of what parsing would.
 
 use super::model::Profile;
+use super::packed::Packed;
 
 /// A meter inside the program.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +38,7 @@ impl Builtin {
             clippy::expect_used,
             reason = "packed from this type by the build script"
         )]
-        postcard::from_bytes(self.packed).expect("a built-in meter unpacks")
+        let packed: Packed = postcard::from_bytes(self.packed).expect("a built-in meter unpacks");
+        packed.unpack()
     }
 }

@@ -7,6 +7,7 @@ mod syntax;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::Duration;
 
 use toml::Spanned;
@@ -17,7 +18,7 @@ use super::format::{
     IdentificationTable, LabelTable, LimitsTable, LineTable, PointTable, ProfileFile,
 };
 use super::model::{Group, Identification, Limits, Profile};
-use super::point::Point;
+use super::point::{Names, Point};
 use crate::codec::{FunctionCode, ReadFunction, RegisterBlock, RegisterRange, UnitRange};
 use crate::transport::{LineSettings, Parity, StopBits};
 
@@ -283,7 +284,7 @@ fn function(
 }
 
 /// The tables of `[labels]`, by name.
-type SharedLabels = BTreeMap<String, BTreeMap<u16, String>>;
+type SharedLabels = BTreeMap<String, Arc<Names>>;
 
 /// All of them, used or not.
 fn shared_labels(
@@ -292,7 +293,7 @@ fn shared_labels(
 ) -> Result<SharedLabels, ProfileError> {
     let tables = tables.iter().map(|(name, table)| {
         let names = point::label_names(source, table, &format!("labels.{name}"))?;
-        Ok((name.clone(), names))
+        Ok((name.clone(), Arc::new(names)))
     });
     tables.collect()
 }

@@ -4,6 +4,7 @@
 //! * [`format`](mod@format) and [`load`]: the TOML file and its strict loader.
 //! * [`scaling`] and [`setup`]: scales, and the setup registers that some of them follow from.
 //! * [`identity`]: what must hold between the values of a meter.
+//! * [`packed`]: how a profile lies in the program.
 //! * [`builtin`] and [`find`]: the meters inside the program, and where a name or a path leads.
 //! * [`selector`]: what a person types to choose points or raw registers.
 //! * [`plan`]: which requests fetch a set of points in the least time on this line.
@@ -16,6 +17,7 @@ pub mod format;
 pub mod identity;
 pub mod load;
 pub mod model;
+pub mod packed;
 pub mod plan;
 pub mod point;
 pub mod scaling;

@@ -1,6 +1,7 @@
 //! A point: one quantity of a meter, where it lies and what it means.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rust_decimal::Decimal;
 use rust_decimal::prelude::ToPrimitive;
@@ -34,6 +35,7 @@ pub struct Point {
     /// Lowest and highest raw integer that may be written.
     pub limits: Option<(i128, i128)>,
     /// Names of codes or of bits.
+    #[serde(skip)]
     pub labels: Labels,
     /// What the meter stores in place of a value it does not have.
     pub no_value: Option<NoValue>,
@@ -68,17 +70,21 @@ impl Access {
     }
 }
 
-/// Names for numbers or bits, by the register that holds them.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+/// Names for numbers or bits, by the register that holds them. Points that share a table of the
+/// profile hold the same one.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Labels {
     /// None: the number itself is shown.
     #[default]
     None,
     /// A name a code.
-    Codes(BTreeMap<u16, String>),
+    Codes(Arc<Names>),
     /// A name a mask, lowest bit first.
-    Bits(BTreeMap<u16, String>),
+    Bits(Arc<Names>),
 }
+
+/// Names by the codes or masks they stand for.
+pub type Names = BTreeMap<u16, String>;
 
 /// The marker a meter stores in place of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -280,7 +286,7 @@ const fn finite(number: f64) -> Result<f64, Missing> {
 }
 
 /// Names of the bits that are set, `|` between them; bits without a name as one number in hex.
-fn bit_names(names: &BTreeMap<u16, String>, word: u16) -> String {
+fn bit_names(names: &Names, word: u16) -> String {
     let mut shown: Vec<String> = Vec::new();
     let mut unknown = word;
     for (mask, name) in names {

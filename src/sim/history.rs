@@ -5,7 +5,7 @@
 use jiff::Timestamp;
 
 use super::load::{Installation, Load, Quantity, Values};
-use super::wave::{Moment, PERIOD_SECONDS};
+use super::wave::{Moment, PERIOD_SECONDS, Wave};
 
 /// Seconds between two samples.
 const STEP: u32 = 180;
@@ -167,6 +167,15 @@ impl Finder {
             highest_at: Moment::in_first_week(self.highest.1),
         }
     }
+}
+
+/// The extremes of a signal.
+pub(super) fn extremes(signal: &Wave) -> Extremes {
+    let mut finder = Finder::new(signal.at(0.0));
+    for second in (0..=PERIOD_SECONDS).step_by(STEP as usize) {
+        finder.see(signal.at(f64::from(second)), second);
+    }
+    finder.extremes()
 }
 
 /// The history of one load.

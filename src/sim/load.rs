@@ -165,23 +165,18 @@ impl Load {
         // `history`.
         Self {
             installation,
-            frequency: Wave::new(
-                installation.frequency,
-                1.0,
-                &[(0.018, 61), (0.010, 307)],
-                random,
-            ),
-            network: Wave::new(installation.voltage, volts, &[(1.5, 7)], random),
-            work: Wave::new(
+            frequency: Wave::new(installation.frequency, &[(0.018, 61), (0.010, 307)], random),
+            network: Wave::scaled(installation.voltage, volts, &[(1.5, 7)], random),
+            work: Wave::scaled(
                 installation.current,
                 amperes,
                 &[(30.0, 7), (12.0, 15), (8.0, 151)],
                 random,
             ),
-            voltages: [(); 3].map(|()| Wave::new(0.0, volts, &[(1.0, 211), (0.6, 503)], random)),
-            currents: [(); 3].map(|()| Wave::new(0.0, amperes, &[(15.0, 97), (7.0, 331)], random)),
-            power_factors: [(); 3]
-                .map(|()| Wave::new(0.94, 1.0, &[(0.020, 61), (0.012, 271)], random)),
+            voltages: [(); 3].map(|()| Wave::scaled(0.0, volts, &[(1.0, 211), (0.6, 503)], random)),
+            currents: [(); 3]
+                .map(|()| Wave::scaled(0.0, amperes, &[(15.0, 97), (7.0, 331)], random)),
+            power_factors: [(); 3].map(|()| Wave::new(0.94, &[(0.020, 61), (0.012, 271)], random)),
             history: OnceLock::new(),
         }
     }

@@ -3,6 +3,10 @@
 //! Names are those of the built-in meter `pqm`. Register facts follow the PQM manual, edition
 //! 3.6x, chapter 7: areas of the memory map pages 197 to 251, formats F22 to F25 page 257.
 
+mod records;
+mod setpoints;
+mod signals;
+mod steady;
 mod table;
 mod words;
 
@@ -11,6 +15,7 @@ use std::ops::RangeInclusive;
 
 use jiff::{Timestamp, civil};
 
+use self::signals::Signals;
 use self::table::{DEMANDS, HUNDREDTH, QUANTITIES, Statistic, TEN_WATTS};
 use self::words::{date, date_of, time_of};
 use super::history::{Metered, Sums};
@@ -43,6 +48,7 @@ const DAY: u32 = 24 * 3600;
 #[derive(Debug)]
 pub struct Pqm {
     load: Load,
+    signals: Signals,
     serial_number: String,
 }
 
@@ -50,10 +56,26 @@ impl Pqm {
     /// The PQM that belongs to `seed`: its load and its serial number come from there.
     pub fn new(seed: u64) -> Self {
         // A row of numbers other than the load's.
-        let number = Random::new(!seed).next() % 10_000_000;
+        let mut random = Random::new(!seed);
+        let number = random.next() % 10_000_000;
         Self {
             load: Load::new(Installation::FACTORY, seed),
+            signals: Signals::new(&mut random),
             serial_number: format!("C{number:07}"),
+        }
+    }
+
+    fn read(&self, now: Timestamp) -> Reading<'_> {
+        let moment = Moment::of(now);
+        let values = self.load.at(moment.seconds());
+        Reading {
+            pqm: self,
+            now,
+            moment,
+            values,
+            powers: Powers::of(&values, TEN_WATTS, HUNDREDTH),
+            energy: OnceCell::new(),
+            demand: OnceCell::new(),
         }
     }
 }
@@ -69,17 +91,7 @@ impl Model for Pqm {
     }
 
     fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_> {
-        let moment = Moment::of(now);
-        let values = self.load.at(moment.seconds());
-        Box::new(Reading {
-            pqm: self,
-            now,
-            moment,
-            values,
-            powers: Powers::of(&values, TEN_WATTS, HUNDREDTH),
-            energy: OnceCell::new(),
-            demand: OnceCell::new(),
-        })
+        Box::new(self.read(now))
     }
 }
 
@@ -98,8 +110,11 @@ impl Measured for Reading<'_> {
     fn content(&self, point: &str) -> Option<Content> {
         self.product(point)
             .or_else(|| self.clock(point))
-            .or_else(|| self.energy(point))
-            .or_else(|| self.measured(point))
+            .or_else(|| self.live(point))
+            .or_else(|| records::content(point, self.moment))
+            .or_else(|| steady::content(point))
+            .or_else(|| setpoints::content(point))
+            .or_else(|| self.event(point))
     }
 }
 
@@ -131,6 +146,20 @@ impl Reading<'_> {
             "clock_date" => date_of(self.now),
             _ => return None,
         })
+    }
+
+    /// What changes with the load.
+    fn live(&self, point: &str) -> Option<Content> {
+        let signal = || self.pqm.signals.content(point, self.moment.seconds());
+        self.energy(point)
+            .or_else(|| self.measured(point))
+            .or_else(signal)
+    }
+
+    /// What has been recorded of the event.
+    fn event(&self, point: &str) -> Option<Content> {
+        let point = point.strip_prefix("event_")?;
+        self.pqm.read(records::event()).live(point)
     }
 
     fn energy(&self, point: &str) -> Option<Content> {

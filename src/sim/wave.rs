@@ -103,9 +103,14 @@ struct Sine {
 }
 
 impl Wave {
-    /// A signal around `mean`; each sine is an amplitude in parts of `scale` and how often it repeats
-    /// in a week, a whole number. Their phases come from `random`.
-    pub fn new(mean: f64, scale: f64, sines: &[(f64, u16)], random: &mut Random) -> Self {
+    /// A signal around `mean`; each sine is an amplitude and how often it repeats in a week, a
+    /// whole number. Their phases come from `random`.
+    pub fn new(mean: f64, sines: &[(f64, u16)], random: &mut Random) -> Self {
+        Self::scaled(mean, 1.0, sines, random)
+    }
+
+    /// As [`Self::new`], with amplitudes in parts of `scale`.
+    pub fn scaled(mean: f64, scale: f64, sines: &[(f64, u16)], random: &mut Random) -> Self {
         let sines = sines
             .iter()
             .map(|(amplitude, cycles)| Sine {

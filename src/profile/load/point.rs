@@ -1,6 +1,6 @@
 //! One point of the file, checked.
 
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use toml::Spanned;
 
@@ -10,7 +10,7 @@ use crate::codec::{FunctionCode, ReadFunction, RegisterRange};
 use crate::profile::error::{Problem, ProfileError};
 use crate::profile::format::{LabelTable, LabelsKey, NoValueTable, PointTable};
 use crate::profile::model::Limits;
-use crate::profile::point::{Access, Labels, Marker, NoValue, OnlyWith, Point};
+use crate::profile::point::{Access, Labels, Marker, Names, NoValue, OnlyWith, Point};
 use crate::profile::value::Missing;
 
 /// The points of one row: one, or as many as it repeats, each checked against itself and the meter's
@@ -244,7 +244,7 @@ fn named(
     key: &str,
 ) -> Result<Labels, ProfileError> {
     let names = match labels.as_ref() {
-        LabelsKey::Own(table) => label_names(source, table, key)?,
+        LabelsKey::Own(table) => Arc::new(label_names(source, table, key)?),
         LabelsKey::Shared(name) => shared.get(name).cloned().ok_or_else(|| {
             let problem = Problem::Unknown {
                 what: "label table",
@@ -268,8 +268,8 @@ pub(super) fn label_names(
     source: &Source<'_>,
     table: &LabelTable,
     key: &str,
-) -> Result<BTreeMap<u16, String>, ProfileError> {
-    let mut names: BTreeMap<u16, String> = BTreeMap::new();
+) -> Result<Names, ProfileError> {
+    let mut names = Names::new();
     let mut rows: Vec<_> = table.iter().collect();
     rows.sort_by_key(|(code, _)| code.span().start);
     for (code, name) in rows {

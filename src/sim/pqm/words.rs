@@ -5,6 +5,12 @@ use jiff::civil::{Date, DateTime};
 use jiff::tz::TimeZone;
 
 use crate::sim::model::Content;
+use crate::sim::words::text;
+
+/// Text in as many characters as the point has, the rest of them spaces.
+pub(super) fn padded(content: &str, length: usize) -> Content {
+    text(&format!("{content:<length$}"))
+}
 
 fn utc(time: Timestamp) -> DateTime {
     TimeZone::UTC.to_datetime(time)
