@@ -72,12 +72,12 @@ fn json_lines_carry_exact_numbers_and_null_for_what_is_missing() {
             "{\"time\":\"<time>\",\"meter\":null,\"unit_id\":1,\"point\":\"0x0010\",\
              \"value\":75367.62,\"unit\":\"kWh\",\"status\":\"ok\"}\n\
              {\"time\":\"<time>\",\"meter\":null,\"unit_id\":1,\"point\":\"0x03FF\",\
-             \"value\":null,\"unit\":null,\"status\":\"exception:2\"}\n\
+             \"value\":7164,\"unit\":null,\"status\":\"ok\"}\n\
              {\"time\":\"<time>\",\"meter\":null,\"unit_id\":1,\"point\":\"0x0400\",\
              \"value\":null,\"unit\":null,\"status\":\"exception:2\"}\n",
         )
         .stderr(format!(
-            "error: unit 1 on {} at 9600 8N1, registers 0x03FF+2: the meter refused: exception \
+            "error: unit 1 on {} at 9600 8N1, registers 0x0400+1: the meter refused: exception \
              02 (ILLEGAL DATA ADDRESS)\n\
              hint: the meter has no such registers, or not as many at once; addresses are as on \
              the wire, from 0 (for 40001 and the like see --numbering modicon)\n",

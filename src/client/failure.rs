@@ -65,6 +65,11 @@ impl Failure {
             Self::Exception(_) | Self::Port(_) | Self::NeverQuiet { .. }
         )
     }
+
+    /// Whether the unit said nothing at all.
+    pub const fn is_silence(&self) -> bool {
+        matches!(self, Self::Silence { .. } | Self::OnlyEcho)
+    }
 }
 
 /// What else was heard while nothing answered.

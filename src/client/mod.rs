@@ -9,7 +9,10 @@
 //!   request, so that a late answer to an earlier attempt is still a right one.
 //! * `debts` remembers the answers that may still come after failed attempts; they are waited for
 //!   before a *different* request goes out, and before the line is left.
+//!
+//! Beside that, `answer_times` keeps how long each unit takes to answer, for planning.
 
+mod answer_times;
 pub mod belief;
 mod debts;
 pub mod failure;

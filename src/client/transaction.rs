@@ -5,6 +5,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 use log::info;
 
+use super::answer_times::{AnswerTimes, Arrivals};
 use super::belief::{self, Certainty, Echo, Evidence, Expectation, Verdict};
 use super::debts::Debts;
 use super::failure::Failure;
@@ -78,6 +79,7 @@ pub struct Client {
     /// Whether anything was sent yet: the pause is one between requests.
     sent: bool,
     debts: Debts,
+    answer_times: AnswerTimes,
 }
 
 impl Client {
@@ -89,12 +91,19 @@ impl Client {
             echoes: None,
             sent: false,
             debts: Debts::default(),
+            answer_times: AnswerTimes::default(),
         }
     }
 
     /// The time in UTC, from the line's clock.
     pub fn utc_now(&self) -> Timestamp {
         self.line.utc_now()
+    }
+
+    /// How long a unit takes to begin its answer to a read, beyond the t3.5 after which it knows that
+    /// the request has ended: the median of its last answers on this line, `None` before the first.
+    pub fn answer_time(&self, unit: Unit) -> Option<Duration> {
+        self.answer_times.median(unit)
     }
 
     /// Leaves the line, and lets no late answer be taken for one to whoever opens it next: what
@@ -120,6 +129,30 @@ impl Client {
         request: &Request,
         patience: Patience,
     ) -> Result<Response, Failure> {
+        self.repeat(unit, request, patience, false)
+    }
+
+    /// The same for a request that the unit may not answer however often it is asked: a first
+    /// attempt that meets silence is the last one.
+    ///
+    /// # Errors
+    /// As [`Self::request`].
+    pub fn try_request(
+        &mut self,
+        unit: Unit,
+        request: &Request,
+        patience: Patience,
+    ) -> Result<Response, Failure> {
+        self.repeat(unit, request, patience, true)
+    }
+
+    fn repeat(
+        &mut self,
+        unit: Unit,
+        request: &Request,
+        patience: Patience,
+        ends_with_silence: bool,
+    ) -> Result<Response, Failure> {
         let frame = rtu::encode_request(unit, request);
         let asked = Asked {
             unit,
@@ -134,7 +167,10 @@ impl Client {
                 Ok(Reply::Normal(response)) => return Ok(response),
                 Ok(Reply::Exception { code, .. }) => return Err(Failure::Exception(code)),
                 Err(failure) => {
-                    let retry = retries.next().filter(|_| failure.is_worth_a_retry());
+                    let ends = ends_with_silence && failure.is_silence();
+                    let retry = retries
+                        .next()
+                        .filter(|retry| failure.is_worth_a_retry() && !(ends && *retry == 1));
                     let Some(retry) = retry else {
                         return Err(failure);
                     };
@@ -172,6 +208,7 @@ impl Client {
         let end_by = begin_by + self.transfer_time(asked.request) + ADAPTER_LATENCY;
         let mut deadline = begin_by;
         let mut received = Vec::new();
+        let mut arrivals = Arrivals::default();
         let mut evidence = Evidence::default();
         loop {
             let left = deadline.saturating_sub(self.line.now());
@@ -183,6 +220,7 @@ impl Client {
             if came == 0 {
                 continue;
             }
+            arrivals.note(came, self.line.now());
             let verdict = expectation.judge(&received);
             forget_oldest(&mut received);
             match verdict {
@@ -198,6 +236,7 @@ impl Client {
                     }
                     let took = self.line.now().saturating_sub(sent).as_secs_f64() * 1000.0;
                     if is_first {
+                        self.measure(asked, sent, &reply, &before, &arrivals);
                         info!("unit {}: answered in {took:.1} ms", asked.unit);
                     } else {
                         info!(
@@ -221,6 +260,38 @@ impl Client {
                 begin_by
             };
         }
+    }
+
+    /// Notes how long the meter took to begin this answer to a request that had left at `sent`.
+    fn measure(
+        &mut self,
+        asked: Asked<'_>,
+        sent: Duration,
+        reply: &Reply,
+        before: &Evidence,
+        arrivals: &Arrivals,
+    ) {
+        let Evidence { echoes, stray, .. } = *before;
+        let is_countable = *before
+            == Evidence {
+                echoes,
+                stray,
+                ..Evidence::default()
+            };
+        // A refusal tells nothing of how long an answer takes.
+        if !is_countable || !matches!(reply, Reply::Normal(_)) {
+            return;
+        }
+        let first = echoes * asked.frame.as_bytes().len() + stray;
+        let Some((at, count)) = arrivals.of(first) else {
+            return;
+        };
+        // Bytes that came at once, as adapters deliver them, were on the wire one by one.
+        let count = count.min(belief::answer_length(asked.request));
+        let timing = self.line.timing();
+        let began = at.saturating_sub(timing.transfer_time(count));
+        let time = began.saturating_sub(sent + timing.silence());
+        self.answer_times.note(asked.unit, time);
     }
 
     /// The time is up.

@@ -12,6 +12,7 @@ mod read_registers;
 mod report;
 mod show_plan;
 mod signals;
+mod trouble;
 
 use std::ffi::OsString;
 use std::io::{self, Write};

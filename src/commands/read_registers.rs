@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 use std::io::{self, IsTerminal, Write};
 
 use super::open_line::LinePlan;
-use super::report::{self, Place, Report};
-use super::show_plan::{self, ShownPlan};
+use super::report::{self, Report};
+use super::show_plan::ShownPlan;
 use super::signals::Stop;
+use super::trouble::Place;
 use super::{CommandError, ExitCode, print};
 use crate::cli::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
 use crate::client::{Client, Patience};
@@ -16,7 +17,7 @@ use crate::output::{Heading, Json, JsonLines, LongCsv, Sink, Table, WideCsv};
 use crate::profile::plan::{Cost, Rules};
 use crate::profile::selector::{Numbering, Reading, select};
 use crate::profile::{Limits, Plan, Point, Profile, find};
-use crate::readings::{Fault, Row, take};
+use crate::readings::{Fault, Inquiry, Memory, Row, take};
 
 /// Reads and prints what was asked for, unit by unit.
 pub(super) fn run(
@@ -37,20 +38,21 @@ pub(super) fn run(
         .map_or_else(|| Rules::new(&limits), Rules::of);
     let patience = line.patience(&limits);
     let cost = Cost::new(line.settings, patience.pause, limits.typical_answer);
-    let plan = Plan::new(&points, function, &rules, cost);
-    if arguments.dry_run {
-        return print(show_plan::frames(&units, &plan).as_bytes());
-    }
-    if arguments.plan {
+    if arguments.dry_run || arguments.plan {
         let shown = ShownPlan {
             units: &units,
             points: &points,
-            plan: &plan,
+            plan: &Plan::new(&points, function, &rules, cost),
             settings: line.settings,
             pause: patience.pause,
             cost,
         };
-        return print(shown.to_string().as_bytes());
+        let text = if arguments.plan {
+            shown.to_string()
+        } else {
+            shown.frames()
+        };
+        return print(text.as_bytes());
     }
 
     let mut client = line.open()?;
@@ -60,7 +62,9 @@ pub(super) fn run(
         units: &units,
         meter: profile.as_ref().map_or("", |profile| profile.name.as_str()),
         points: &points,
-        plan: &plan,
+        function,
+        rules: &rules,
+        cost,
         patience,
         line: &line.name(),
         stop: &stop,
@@ -77,7 +81,9 @@ struct Round<'a> {
     units: &'a [Unit],
     meter: &'a str,
     points: &'a [Point],
-    plan: &'a Plan,
+    function: ReadFunction,
+    rules: &'a Rules,
+    cost: Cost,
     patience: Patience,
     line: &'a str,
     stop: &'a Stop,
@@ -124,11 +130,20 @@ fn read(
 
 /// Reads one unit and tells what went wrong.
 fn ask(round: &Round<'_>, unit: Unit, client: &mut Client, report: &mut Report) -> Row {
-    let Round { points, plan, .. } = round;
-    let (row, troubles) = take(client, unit, round.meter, points, plan, round.patience);
+    let inquiry = Inquiry {
+        unit,
+        meter: round.meter,
+        points: round.points,
+        function: round.function,
+        cost: round.cost,
+        patience: round.patience,
+    };
+    let mut memory = Memory::new(round.rules.clone());
+    let (row, troubles) = take(client, &inquiry, &mut memory);
     let place = Place {
         line: round.line,
         unit,
+        points: round.points,
         attempts: round.patience.retries + 1,
     };
     for trouble in &troubles {

@@ -5,10 +5,11 @@ use std::error::Error;
 use std::fmt;
 use std::io::{self, Write};
 
+use super::trouble::{self, Place};
 use super::{CommandError, ExitCode};
 use crate::cli::Usage;
 use crate::client::Failure;
-use crate::codec::{AddressError, ExceptionCode, Unit};
+use crate::codec::{AddressError, ExceptionCode};
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
 use crate::readings::Trouble;
@@ -32,16 +33,6 @@ pub(super) fn usage(message: &Usage) -> ExitCode {
 pub(super) struct Report {
     quiet: bool,
     hinted: BTreeSet<String>,
-}
-
-/// Where and how often a read was tried, for the message.
-pub(super) struct Place<'a> {
-    /// `sim: at 9600 8N1`.
-    pub(super) line: &'a str,
-    /// The unit.
-    pub(super) unit: Unit,
-    /// How often a read is tried.
-    pub(super) attempts: u32,
 }
 
 impl Report {
@@ -73,44 +64,20 @@ impl Report {
 
     /// Prints what went wrong while points of a unit were read.
     pub(super) fn trouble(&mut self, place: &Place<'_>, trouble: &Trouble) {
-        let Place { line, unit, .. } = place;
-        let at = format!("unit {unit} on {line}");
+        say(format_args!("error: {}", trouble::text(place, trouble)));
         match trouble {
-            Trouble::Unread {
-                read,
-                failure,
-                untried,
-            } => {
-                let mut text = format!("{at}, registers {}: {failure}", read.range);
-                if place.attempts > 1 && failure.is_worth_a_retry() {
-                    text = format!("{text}, {} attempts", place.attempts);
-                }
-                match untried {
-                    0 => {}
-                    1 => text.push_str("; 1 more read of this unit was not tried"),
-                    _ => text = format!("{text}; {untried} more reads of this unit were not tried"),
-                }
-                say(format_args!("error: {text}"));
+            Trouble::Unread { failure, .. } => {
                 causes(failure);
                 self.hint(failure_hint(failure).map(str::to_owned));
             }
-            Trouble::Impossible {
-                point,
-                kind,
-                registers,
-            } => {
-                let words: Vec<String> =
-                    registers.iter().map(|word| format!("{word:04X}")).collect();
-                let words = words.join(" ");
-                say(format_args!(
-                    "error: {at}, {point}: registers {words} hold no {kind}"
-                ));
-                self.hint(Some(
-                    "the type, byte order or scale is not this register's, or the meter's value \
-                     is broken"
-                        .to_owned(),
-                ));
+            Trouble::Refused { code, .. } => {
+                self.hint(failure_hint(&Failure::Exception(*code)).map(str::to_owned));
             }
+            Trouble::Impossible { .. } => self.hint(Some(
+                "the type, byte order or scale is not this register's, or the meter's value is \
+                 broken"
+                    .to_owned(),
+            )),
         }
     }
 

@@ -9,15 +9,6 @@ use crate::profile::plan::{Cost, PlannedRead};
 use crate::profile::{Plan, Point};
 use crate::transport::LineSettings;
 
-/// The requests as they would go out, one a line.
-pub(super) fn frames(units: &[Unit], plan: &Plan) -> String {
-    let reads = |unit: &Unit| {
-        let unit = *unit;
-        plan.reads.iter().map(move |read| frame(unit, read) + "\n")
-    };
-    units.iter().flat_map(reads).collect()
-}
-
 fn frame(unit: Unit, read: &PlannedRead) -> String {
     rtu::encode_request(unit, &read.request()).to_string()
 }
@@ -34,6 +25,16 @@ pub(super) struct ShownPlan<'a> {
 }
 
 impl ShownPlan<'_> {
+    /// Nothing but the requests as they would go out, one a line.
+    pub(super) fn frames(&self) -> String {
+        let reads = |unit: &Unit| {
+            let unit = *unit;
+            let reads = self.plan.reads.iter();
+            reads.map(move |read| frame(unit, read) + "\n")
+        };
+        self.units.iter().flat_map(reads).collect()
+    }
+
     fn requests(&self, unit: Unit) -> String {
         let lines = self.plan.reads.iter().map(|read| {
             vec![

@@ -9,6 +9,7 @@ mod cost;
 mod fence;
 mod path;
 mod rules;
+mod split;
 
 use std::time::Duration;
 

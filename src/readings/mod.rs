@@ -1,9 +1,17 @@
 //! Readings: points of a meter read once, each with a value or the reason why there is none.
 //!
-//! [`take`](take::take) carries out a read plan through a client; what it returns is what the
-//! outputs print.
+//! [`take`](take::take) reads a unit through a client; what it returns is what the outputs print.
+//!
+//! * `gather` fetches the registers of all points: it plans the reads and copes with a meter that
+//!   does not give them as planned; `harvest` is what it has so far.
+//! * [`memory`] keeps what that taught, for as long as the program runs; `lesson` is one such thing.
+//! * [`take`](mod@take) then says what the registers mean.
 
 pub mod fault;
+mod gather;
+mod harvest;
+mod lesson;
+pub mod memory;
 pub mod take;
 pub mod verify;
 
@@ -13,7 +21,8 @@ use crate::codec::Unit;
 use crate::profile::Value;
 
 pub use fault::Fault;
-pub use take::{Trouble, take};
+pub use memory::Memory;
+pub use take::{Inquiry, Trouble, take};
 
 /// One meter read once.
 #[derive(Debug, Clone, PartialEq)]

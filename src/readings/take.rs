@@ -1,15 +1,28 @@
-//! Carries out a read plan.
+//! Reads a unit: fetches the registers of all points, then says what they mean.
 
-use log::info;
-
-use super::{Fault, Row};
+use super::gather::gather;
+use super::{Fault, Memory, Row};
 use crate::client::{Client, Failure, Patience};
-use crate::codec::{Response, Unit};
-use crate::profile::plan::PlannedRead;
-use crate::profile::{Missing, Plan, Point, Scales, Value};
+use crate::codec::{ExceptionCode, ReadFunction, Unit};
+use crate::profile::plan::{Cost, PlannedRead};
+use crate::profile::{Missing, Point, Scales, Value};
 
-/// A unit that leaves this many reads in a row unanswered is not asked further.
-const MOST_SILENT_READS: usize = 2;
+/// What is asked of a unit.
+#[derive(Debug, Clone, Copy)]
+pub struct Inquiry<'a> {
+    /// The unit.
+    pub unit: Unit,
+    /// The meter's name; empty for raw registers of an unknown one.
+    pub meter: &'a str,
+    /// What is read.
+    pub points: &'a [Point],
+    /// The function for points that have none of their own.
+    pub function: ReadFunction,
+    /// What reads cost on this line while the meter's answer time has not been measured.
+    pub cost: Cost,
+    /// How patient to be.
+    pub patience: Patience,
+}
 
 /// Something that went wrong while points were read.
 #[derive(Debug)]
@@ -23,6 +36,14 @@ pub enum Trouble {
         /// How many further reads were not tried because the unit was silent or the port gone.
         untried: usize,
     },
+    /// The meter refused points, each of them when it was asked for by itself, or all of them for
+    /// another reason than their registers.
+    Refused {
+        /// Which, as indices into those that were asked for.
+        points: Vec<usize>,
+        /// What it said.
+        code: ExceptionCode,
+    },
     /// Registers arrived and hold what the point's type cannot.
     Impossible {
         /// The point's name.
@@ -34,111 +55,43 @@ pub enum Trouble {
     },
 }
 
-/// Reads `points` of one unit as `plan` says; the plan is one made for these very points. A unit
-/// that does not answer at all, or stops answering, is not asked further: every other read would
-/// cost a time-out as well.
+/// Reads the points of one unit, in as few requests as it is known to allow. A unit that does not
+/// answer at all, or stops answering, is not asked further: every other read would cost a time-out
+/// as well.
 pub fn take(
     client: &mut Client,
-    unit: Unit,
-    meter: &str,
-    points: &[Point],
-    plan: &Plan,
-    patience: Patience,
+    inquiry: &Inquiry<'_>,
+    memory: &mut Memory,
 ) -> (Row, Vec<Trouble>) {
-    let mut row = Row::missing(client.utc_now(), meter, unit, points.len(), Fault::Timeout);
-    let mut troubles = Vec::new();
-    let mut answered = false;
-    let mut silent = 0;
-    for (index, read) in plan.reads.iter().enumerate() {
-        info!("unit {unit}: reading {}", read.range);
-        let failure = match registers(client, unit, read, patience) {
-            Ok(registers) => {
-                answered = true;
-                silent = 0;
-                fill(&mut row, points, read, &registers, &mut troubles);
-                continue;
-            }
-            Err(failure) => failure,
-        };
-        let fault = Fault::from(&failure);
-        answered |= matches!(failure, Failure::Exception(_));
-        silent = if fault == Fault::Timeout {
-            silent + 1
-        } else {
-            0
-        };
-        let gives_up = match fault {
-            Fault::Port => true,
-            Fault::Timeout => !answered || silent == MOST_SILENT_READS,
-            _ => false,
-        };
-        let (_, rest) = plan.reads.split_at(index + 1);
-        let untried = if gives_up { rest } else { &[] };
-        for point in untried.iter().chain([read]).flat_map(|read| &read.points) {
-            row.readings[*point] = Err(fault);
-        }
-        troubles.push(Trouble::Unread {
-            read: read.clone(),
-            failure,
-            untried: untried.len(),
-        });
-        if gives_up {
-            break;
-        }
-    }
+    let time = client.utc_now();
+    let (registers, mut troubles) = gather(client, inquiry, memory);
+    let row = Row {
+        time,
+        meter: inquiry.meter.to_owned(),
+        unit: inquiry.unit,
+        readings: interpret(inquiry.points, &registers, &mut troubles),
+    };
     (row, troubles)
 }
 
-fn registers(
-    client: &mut Client,
-    unit: Unit,
-    read: &PlannedRead,
-    patience: Patience,
-) -> Result<Vec<u16>, Failure> {
-    match client.request(unit, &read.request(), patience)? {
-        Response::Registers { values, .. } => Ok(values.into_vec()),
-        // The client believes only what answers the request, and a read is answered by registers.
-        other => Err(Failure::Mismatch {
-            found: format!("{other:?}"),
-        }),
-    }
-}
-
-/// Puts the values of one read into the row.
-fn fill(
-    row: &mut Row,
+/// What the registers of points mean, each in its place.
+fn interpret(
     points: &[Point],
-    read: &PlannedRead,
-    registers: &[u16],
+    registers: &[Result<Vec<u16>, Fault>],
     troubles: &mut Vec<Trouble>,
-) {
-    for index in &read.points {
-        let point = &points[*index];
-        let value = value(point, read, registers);
-        if value == Err(Missing::Mismatch) {
-            troubles.push(Trouble::Impossible {
-                point: point.name.clone(),
-                kind: point.kind.to_string(),
-                registers: own(point, read, registers).unwrap_or_default().to_vec(),
-            });
-        }
-        row.readings[*index] = value.map_err(Fault::from);
-    }
-}
-
-/// The value of one point among the registers of a read that covers it.
-fn value(point: &Point, read: &PlannedRead, registers: &[u16]) -> Result<Value, Missing> {
-    let registers = own(point, read, registers).ok_or(Missing::Mismatch)?;
-    point.interpret(registers, Scales::none())
-}
-
-/// The registers of one point among those of a read that covers it.
-fn own<'a>(point: &Point, read: &PlannedRead, registers: &'a [u16]) -> Option<&'a [u16]> {
-    let offset = point
-        .range
-        .start()
-        .get()
-        .checked_sub(read.range.start().get())?;
-    let offset = usize::from(offset);
-    registers.get(offset..offset + usize::from(point.range.count()))
+) -> Vec<Result<Value, Fault>> {
+    let mut value = |(point, registers): (&Point, &Result<Vec<u16>, Fault>)| {
+        let registers = registers.as_deref().map_err(|fault| *fault)?;
+        point.interpret(registers, Scales::none()).map_err(|missing| {
+            if missing == Missing::Mismatch {
+                troubles.push(Trouble::Impossible {
+                    point: point.name.clone(),
+                    kind: point.kind.to_string(),
+                    registers: registers.to_vec(),
+                });
+            }
+            Fault::from(missing)
+        })
+    };
+    points.iter().zip(registers).map(&mut value).collect()
 }

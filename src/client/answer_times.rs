@@ -1,0 +1,51 @@
+//! How long meters take before they begin to answer, as measured on this line.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::time::Duration;
+
+use crate::codec::Unit;
+
+/// So many of a unit's last answers count.
+const LAST: usize = 31;
+
+/// The times of each unit's last answers.
+#[derive(Debug, Default)]
+pub(super) struct AnswerTimes(BTreeMap<Unit, VecDeque<Duration>>);
+
+impl AnswerTimes {
+    /// One more answer of a unit.
+    pub(super) fn note(&mut self, unit: Unit, time: Duration) {
+        let times = self.0.entry(unit).or_default();
+        if times.len() == LAST {
+            times.pop_front();
+        }
+        times.push_back(time);
+    }
+
+    /// The median: an answer that was held up once, or the few that come faster than the rest,
+    /// change nothing. `None` before the first answer.
+    pub(super) fn median(&self, unit: Unit) -> Option<Duration> {
+        let mut times: Vec<Duration> = self.0.get(&unit)?.iter().copied().collect();
+        times.sort_unstable();
+        times.get(times.len() / 2).copied()
+    }
+}
+
+/// When the bytes of one exchange came.
+#[derive(Debug, Default)]
+pub(super) struct Arrivals(Vec<(usize, Duration)>);
+
+impl Arrivals {
+    /// So many more came at this time.
+    pub(super) fn note(&mut self, count: usize, at: Duration) {
+        let before = self.0.last().map_or(0, |(total, _)| *total);
+        self.0.push((before + count, at));
+    }
+
+    /// When the byte with this index came, and how many came with it that are not before it, itself
+    /// included.
+    pub(super) fn of(&self, index: usize) -> Option<(Duration, usize)> {
+        let (total, at) = self.0.iter().find(|(total, _)| *total > index)?;
+        Some((*at, total - index))
+    }
+}
