@@ -66,7 +66,7 @@ fn values_are_those_of_a_shop_behind_current_transformers() {
     let ranges = [
         ("voltage_l1_n", 227.0..233.0),
         ("voltage_l3_l1", 394.0..403.0),
-        ("current_l2", 43.0..77.0),
+        ("current_l2", 36.0..84.0),
         ("active_power_sys", 26_000.0..53_000.0),
         ("power_factor_l1", 0.9..0.98),
         ("frequency", 49.9..50.1),

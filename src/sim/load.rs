@@ -33,7 +33,7 @@ pub enum Quantity {
     VoltageLlAverage,
     /// Greatest distance of a phase voltage from their mean, as a fraction of it.
     VoltageUnbalance,
-    /// Phase A, A: that of the installation and up to a fifth of its swing more or less.
+    /// Phase A, A: its share of that of the installation, and up to a fifth of the swing more or less.
     CurrentA,
     /// Phase B, A.
     CurrentB,
@@ -113,8 +113,10 @@ impl Values {
 pub struct Installation {
     /// Phase to neutral, V.
     pub voltage: f64,
-    /// Mean current of a phase, A.
+    /// Mean current of the phases, A.
     pub current: f64,
+    /// What part of it each phase draws; together 3.
+    pub shares: [f64; 3],
     /// How far the currents go from there: 1 for up to a fifth, 4 for up to four fifths; below 5.
     pub swing: f64,
     /// Hz.
@@ -130,6 +132,7 @@ impl Installation {
     pub const FACTORY: Self = Self {
         voltage: 347.0,
         current: 375.0,
+        shares: [1.0; 3],
         swing: 1.0,
         frequency: 60.0,
         power_window: 900,
@@ -174,8 +177,10 @@ impl Load {
                 random,
             ),
             voltages: [(); 3].map(|()| Wave::scaled(0.0, volts, &[(1.0, 211), (0.6, 503)], random)),
-            currents: [(); 3]
-                .map(|()| Wave::scaled(0.0, amperes, &[(15.0, 97), (7.0, 331)], random)),
+            currents: installation.shares.map(|share| {
+                let apart = (share - 1.0) * installation.current;
+                Wave::scaled(apart, amperes, &[(15.0, 97), (7.0, 331)], random)
+            }),
             power_factors: [(); 3].map(|()| Wave::new(0.94, &[(0.020, 61), (0.012, 271)], random)),
             history: OnceLock::new(),
         }

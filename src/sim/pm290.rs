@@ -25,11 +25,12 @@ use super::wave::Moment;
 use super::words::counter;
 use crate::codec::RegisterRange;
 
-/// A workshop on 230/400 V that draws 65 to 155 A. Its demands are means of the periods in the
+/// A workshop on 230/400 V that draws 55 to 165 A. Its demands are means of the periods in the
 /// setup: 20 minutes of power, 900 seconds of current.
 const WORKSHOP: Installation = Installation {
     voltage: 230.0,
     current: 110.0,
+    shares: [0.9, 1.1, 1.0],
     swing: 2.0,
     frequency: 50.0,
     power_window: 20 * 60,

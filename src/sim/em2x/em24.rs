@@ -6,10 +6,11 @@ use crate::sim::load::Installation;
 use crate::sim::model::Content;
 use crate::sim::words::{rounded, text};
 
-/// A large house on 230/400 V that draws 7 to 37 A.
+/// A large house on 230/400 V that draws 5 to 39 A.
 pub(super) const HOUSE: Installation = Installation {
     voltage: 230.0,
     current: 22.0,
+    shares: [1.0, 0.9, 1.1],
     swing: 3.5,
     frequency: 50.0,
     power_window: 15 * 60,
