@@ -1,6 +1,6 @@
 //! What is known of a unit for as long as the program runs.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::lesson::Lesson;
 use crate::codec::{ReadFunction, RegisterRange};
@@ -25,6 +25,8 @@ pub struct Memory {
     largest: u16,
     /// The reads with holes it answered.
     crossed: BTreeSet<(ReadFunction, RegisterRange)>,
+    /// The registers that its scales depend on, by the names of their points.
+    setup: BTreeMap<String, Vec<u16>>,
 }
 
 /// Why a unit did not give registers.
@@ -55,6 +57,7 @@ impl Memory {
             suspected: Vec::new(),
             largest: 0,
             crossed: BTreeSet::new(),
+            setup: BTreeMap::new(),
         }
     }
 
@@ -117,6 +120,16 @@ impl Memory {
         let lesson = Lesson::Refused(read.function, read.range);
         self.learn(lesson, cause);
         lesson
+    }
+
+    /// The registers of a setup point, once it has been read.
+    pub(super) fn setup(&self, point: &str) -> Option<&[u16]> {
+        self.setup.get(point).map(Vec::as_slice)
+    }
+
+    /// Keeps what setup points hold.
+    pub(super) fn keep_setup(&mut self, registers: &BTreeMap<String, Vec<u16>>) {
+        self.setup.extend(registers.clone());
     }
 
     fn learn(&mut self, lesson: Lesson, cause: Cause) {
