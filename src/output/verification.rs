@@ -3,10 +3,10 @@
 use super::columns::columns;
 use super::escape;
 use super::table::heading;
-use crate::profile::identity::{Identity, Outcome};
 use crate::profile::Point;
-use crate::readings::verify::{Verdict, Verification};
+use crate::profile::identity::{Identity, Outcome};
 use crate::readings::Row;
+use crate::readings::verify::{Verdict, Verification};
 
 /// A verification as text: the identities, the points that are not verified, and what it comes to.
 #[derive(Debug)]
