@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use jiff::Timestamp;
 use meterpoll::codec::rtu::{Hex, check, decode_reply, encode_request};
-use meterpoll::codec::value::encode_integer;
+use meterpoll::codec::value::{encode, encode_integer};
 use meterpoll::codec::{ReadFunction, RegisterRange, Reply, Request, Response, Unit, UnitRange};
 use meterpoll::profile::{Point, Scales, Value};
 use meterpoll::sim::{Content, Meter, Model, Pqm};
@@ -72,7 +72,7 @@ fn every_point_of_the_profile_reads_as_what_the_model_measures() {
         let registers = read(ReadFunction::HoldingRegisters, point.range);
         let expected = match measured.content(&point.name) {
             Some(Content::Number(number)) => encode_integer(point.kind, point.order, number),
-            Some(Content::Words(words)) => Some(words),
+            Some(Content::Other(value)) => encode(point.kind, point.order, &value),
             None => None,
         };
         assert_eq!(Some(&registers), expected.as_ref(), "{}", point.name);

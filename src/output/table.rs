@@ -101,7 +101,7 @@ fn grid(points: &[Point], row: &Row) -> String {
         let mut cells = vec![
             format!("{}{mark}", point.name),
             shown(reading, decimals),
-            point.unit.clone().unwrap_or_default(),
+            unit(point, reading),
         ];
         if missing {
             cells.push(status(reading.as_ref().err().copied()));
@@ -109,6 +109,14 @@ fn grid(points: &[Point], row: &Row) -> String {
         cells
     });
     columns(&header, &[1], lines)
+}
+
+/// The unit of a number; the name of a code, such as `off`, has none.
+fn unit(point: &Point, reading: &Result<Value, Fault>) -> String {
+    match reading {
+        Ok(value) if !value.is_number() => String::new(),
+        _ => point.unit.clone().unwrap_or_default(),
+    }
 }
 
 /// A value as it stands in its column: numbers so that their decimal marks align.

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use jiff::Timestamp;
 
 use crate::codec::RegisterRange;
+use crate::codec::value::Raw;
 
 /// What a meter of one kind holds and measures.
 pub trait Model: Send + Sync {
@@ -40,11 +41,11 @@ pub trait Measured {
     fn content(&self, point: &str) -> Option<Content>;
 }
 
-/// What a point holds, before it is laid into registers.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// What a point holds, before its type and byte order make registers of it.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Content {
-    /// A raw integer, before scale: the point's type and byte order make registers of it.
+    /// A raw integer, before scale; the bits of flags, the number of a letter.
     Number(i128),
-    /// Registers as they are: text, dates, times.
-    Words(Vec<u16>),
+    /// Text, a date, a time.
+    Other(Raw),
 }

@@ -1,6 +1,7 @@
 //! Values as all meters write them into registers.
 
 use super::model::Content;
+use crate::codec::value::Raw;
 
 /// The nearest whole step.
 #[expect(
@@ -16,12 +17,7 @@ pub(super) fn counter(value: f64) -> i128 {
     rounded(value.floor().max(0.0))
 }
 
-/// Two characters a register, the first in the high byte; 0 where the last register has none left.
+/// Text, filled up with spaces where the point is longer.
 pub(super) fn text(text: &str) -> Content {
-    let words = text.as_bytes().chunks(2).map(|pair| match pair {
-        [first, second] => u16::from_be_bytes([*first, *second]),
-        [first] => u16::from_be_bytes([*first, 0]),
-        _ => 0,
-    });
-    Content::Words(words.collect())
+    Content::Other(Raw::Text(text.to_owned()))
 }

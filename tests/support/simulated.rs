@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use jiff::{SignedDuration, Timestamp};
 use meterpoll::codec::rtu::{check, decode_reply, encode_request};
-use meterpoll::codec::value::encode_integer;
+use meterpoll::codec::value::{ByteOrder, Raw, RegisterType, encode, encode_integer};
 use meterpoll::codec::{ReadFunction, RegisterRange, Reply, Request, Response, Unit, UnitRange};
 use meterpoll::profile::identity::{Figure, Outcome};
 use meterpoll::profile::{Missing, Point, Profile, Setup, Value};
@@ -46,7 +46,15 @@ pub(crate) fn raw(model: &dyn Model, point: &str, now: Timestamp) -> i128 {
 /// The registers of a point that is not a number.
 pub(crate) fn words(model: &dyn Model, point: &str, now: Timestamp) -> Vec<u16> {
     match model.measure(now).content(point) {
-        Some(Content::Words(words)) => words,
+        Some(Content::Other(value)) => {
+            let kind = match &value {
+                Raw::Time(_) => RegisterType::Time,
+                Raw::Date(_) => RegisterType::Date,
+                Raw::Text(text) => RegisterType::Ascii(u8::try_from(text.len()).unwrap()),
+                _ => panic!("{point} holds {value:?}"),
+            };
+            encode(kind, ByteOrder::Abcd, &value).unwrap()
+        }
         other => panic!("{point} holds {other:?}"),
     }
 }
@@ -68,7 +76,7 @@ pub(crate) fn mean_before(model: &dyn Model, point: &str, end: Timestamp, span: 
 pub(crate) fn registers(point: &Point, measured: &dyn Measured) -> Vec<u16> {
     let registers = match measured.content(&point.name) {
         Some(Content::Number(number)) => encode_integer(point.kind, point.order, number),
-        Some(Content::Words(words)) => Some(words),
+        Some(Content::Other(value)) => encode(point.kind, point.order, &value),
         None => None,
     };
     registers.unwrap_or_else(|| panic!("{} holds nothing that fits", point.name))

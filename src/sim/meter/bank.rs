@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use jiff::Timestamp;
 
 use super::Kind;
-use crate::codec::value::encode_integer;
+use crate::codec::value::{encode, encode_integer};
 use crate::codec::{ExceptionCode, ReadFunction, RegisterRange};
 use crate::profile::Point;
 use crate::sim::model::{Content, Measured};
@@ -93,7 +93,7 @@ fn is_covered(range: RegisterRange, points: &[&Point]) -> bool {
 fn registers(point: &Point, measured: &dyn Measured) -> Vec<u16> {
     match measured.content(&point.name) {
         Some(Content::Number(number)) => encode_integer(point.kind, point.order, number),
-        Some(Content::Words(words)) => Some(words),
+        Some(Content::Other(value)) => encode(point.kind, point.order, &value),
         None => None,
     }
     .unwrap_or_default()

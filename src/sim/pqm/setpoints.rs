@@ -1,18 +1,20 @@
 //! Setpoints: those that fit the load, and the factory settings of the others.
 
-use super::words::padded;
-use crate::sim::model::Content;
+use jiff::civil;
 
-/// Noon, as hour and minute (F22) and milliseconds in the minute (F23).
-const NOON: [u16; 2] = [0x0C00, 0];
+use super::words::time;
+use crate::sim::model::Content;
+use crate::sim::words::text;
+
+const NOON: civil::Time = civil::time(12, 0, 0, 0);
 
 /// What the setpoint of this name holds.
 pub(super) fn content(point: &str) -> Option<Content> {
     if matches!(point, "time_alarm_pickup" | "time_alarm_dropout") {
-        return Some(Content::Words(NOON.to_vec()));
+        return Some(time(NOON));
     }
-    if let Some((_, length, setting)) = TEXTS.iter().find(|(name, ..)| *name == point) {
-        return Some(padded(setting, *length));
+    if let Some((_, setting)) = TEXTS.iter().find(|(name, _)| *name == point) {
+        return Some(text(setting));
     }
     let mut numbers = SETTINGS.iter().chain(FACTORY);
     let (_, raw) = numbers.find(|(name, _)| *name == point)?;
@@ -45,19 +47,19 @@ const SETTINGS: &[(&str, u16)] = &[
 ];
 
 /// Texts and their lengths. The factory leaves the messages and the identification empty.
-const TEXTS: [(&str, usize, &str); 12] = [
-    ("meter_id", 20, "METERPOLL SIMULATION"),
-    ("analog_in_main_name", 20, "MAIN ANALOG INPUT"),
-    ("analog_in_main_units", 10, "Units"),
-    ("analog_in_alt_name", 20, "ALT ANALOG INPUT"),
-    ("analog_in_alt_units", 10, "Units"),
-    ("switch_a_name", 20, "SWITCH INPUT A"),
-    ("switch_b_name", 20, "SWITCH INPUT B"),
-    ("switch_c_name", 20, "SWITCH INPUT C"),
-    ("switch_d_name", 20, "SWITCH INPUT D"),
-    ("pulse_in_units", 10, "Units"),
-    ("programmable_message", 40, "SIMULATED METER"),
-    ("flash_message", 40, "SIMULATED METER"),
+const TEXTS: [(&str, &str); 12] = [
+    ("meter_id", "METERPOLL SIMULATION"),
+    ("analog_in_main_name", "MAIN ANALOG INPUT"),
+    ("analog_in_main_units", "Units"),
+    ("analog_in_alt_name", "ALT ANALOG INPUT"),
+    ("analog_in_alt_units", "Units"),
+    ("switch_a_name", "SWITCH INPUT A"),
+    ("switch_b_name", "SWITCH INPUT B"),
+    ("switch_c_name", "SWITCH INPUT C"),
+    ("switch_d_name", "SWITCH INPUT D"),
+    ("pulse_in_units", "Units"),
+    ("programmable_message", "SIMULATED METER"),
+    ("flash_message", "SIMULATED METER"),
 ];
 
 /// Raw numbers as the meter leaves the factory.

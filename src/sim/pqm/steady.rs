@@ -1,12 +1,12 @@
 //! What stays as it is while nothing is wrong: status words, diagnosis, the user map.
 
-use super::words::padded;
 use crate::sim::model::Content;
+use crate::sim::words::text;
 
 /// What the point of this name holds.
 pub(super) fn content(point: &str) -> Option<Content> {
     if point == "message_buffer" {
-        return Some(padded("SIMULATED METER", 40));
+        return Some(text("SIMULATED METER"));
     }
     let raw = WORDS.iter().find(|(name, _)| *name == point);
     let raw = raw

@@ -1,47 +1,39 @@
-//! Dates and times as the PQM writes them into registers.
+//! Dates and times as the PQM shows them: UTC, in whole milliseconds.
 
 use jiff::Timestamp;
-use jiff::civil::{Date, DateTime};
+use jiff::civil::{self, Date, DateTime};
 use jiff::tz::TimeZone;
 
+use crate::codec::value::Raw;
 use crate::sim::model::Content;
-use crate::sim::words::text;
-
-/// Text in as many characters as the point has, the rest of them spaces.
-pub(super) fn padded(content: &str, length: usize) -> Content {
-    text(&format!("{content:<length$}"))
-}
 
 fn utc(time: Timestamp) -> DateTime {
     TimeZone::UTC.to_datetime(time)
 }
 
-/// Hour and minute (F22), then milliseconds in the minute (F23), UTC.
-pub(super) fn time_of(time: Timestamp) -> Content {
-    let time = utc(time).time();
-    // At most 59 999.
-    let milliseconds = i32::from(time.second()) * 1000 + i32::from(time.millisecond());
-    Content::Words(vec![
-        pair(time.hour(), time.minute()),
-        u16::try_from(milliseconds).unwrap_or_default(),
-    ])
+/// The time of day.
+pub(super) fn time_of(at: Timestamp) -> Content {
+    let at = utc(at).time();
+    let milliseconds = i32::from(at.millisecond()) * 1_000_000;
+    time(civil::time(
+        at.hour(),
+        at.minute(),
+        at.second(),
+        milliseconds,
+    ))
 }
 
-/// Month and day (F24), then the year (F25), UTC.
-pub(super) fn date_of(time: Timestamp) -> Content {
-    date(utc(time).date())
+/// A time of day of whole milliseconds.
+pub(super) const fn time(time: civil::Time) -> Content {
+    Content::Other(Raw::Time(time))
 }
 
-/// Month and day, then the year.
-pub(super) fn date(date: Date) -> Content {
-    Content::Words(vec![
-        pair(date.month(), date.day()),
-        // A year before the common era has no register value; no clock shows one.
-        u16::try_from(date.year()).unwrap_or_default(),
-    ])
+/// The day.
+pub(super) fn date_of(at: Timestamp) -> Content {
+    date(utc(at).date())
 }
 
-/// Two parts of a date or a time, none of them negative.
-fn pair(high: i8, low: i8) -> u16 {
-    u16::from_be_bytes([high.unsigned_abs(), low.unsigned_abs()])
+/// A day.
+pub(super) const fn date(date: Date) -> Content {
+    Content::Other(Raw::Date(date))
 }
