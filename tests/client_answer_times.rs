@@ -61,6 +61,10 @@ fn bytes_that_are_delivered_at_once_were_on_the_wire_one_by_one() {
     let end = SILENCE + ms(40) + LineSettings::default().transfer_time(25);
     bench.reads(move |answer| vec![(end, answer)]);
     assert_eq!(bench.known(), Some(40_000));
+    // Noise behind the answer is no part of it.
+    let mut bench = Bench::new();
+    bench.reads(move |answer| vec![(end, [answer, vec![0; 9]].concat())]);
+    assert_eq!(bench.known(), Some(40_000));
 }
 
 #[test]

@@ -240,6 +240,36 @@ fn a_refused_hole_is_read_around() {
 }
 
 #[test]
+fn a_point_that_this_meter_lacks_is_run_over_no_more_and_others_are() {
+    let meter = meter(|_, start, count| {
+        if (start..start + count).contains(&2) {
+            Err(Some(2))
+        } else {
+            Ok(())
+        }
+    });
+    // Points c, r and so on lie between those asked for; a read of b and d runs over c.
+    let path = profile("lacking", "limits.read_registers = 5", None);
+    let output = read(&meter, "-a 1 -t 10s -v a b d e k m q s --meter")
+        .argument(path)
+        .output();
+    assert_eq!(output.status.code(), Some(0));
+    let stderr = String::from_utf8(output.stderr).expect("text");
+    let learned: Vec<&str> = stderr
+        .lines()
+        .filter(|line| line.contains("from now on"))
+        .collect();
+    assert_eq!(
+        learned,
+        ["unit 1: no other read covers registers 0x0002+1 from now on"]
+    );
+    assert_eq!(
+        requests(&meter),
+        [(1, 0, 5), (1, 0, 2), (1, 3, 2), (1, 10, 3), (1, 16, 3)]
+    );
+}
+
+#[test]
 fn a_unit_that_is_not_there_is_told_once_with_its_setting_and_its_attempts() {
     let meter = meter(|_, _, _| Err(None));
     read(&meter, "-q -a 1 -t 200ms --retries 1 0+20 0x100+20")

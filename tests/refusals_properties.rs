@@ -54,7 +54,7 @@ fn run_of(cases: u32) -> TestRunner {
 
 #[test]
 fn what_the_meter_gives_by_itself_arrives_whatever_it_refuses_beside_it() {
-    run_of(2000)
+    run_of(1200)
         .run(
             &(any_meter(), any_points(), any::<bool>(), 4_u16..=125),
             |(mut meter, points, read_holes, read_registers)| {
@@ -120,7 +120,7 @@ fn any_fault() -> impl Strategy<Value = Fault> {
 #[test]
 fn no_value_is_ever_wrong_on_a_bad_line() {
     let faults = prop::collection::vec(any_fault(), 1..40);
-    run_of(1000)
+    run_of(600)
         .run(
             &(any_meter(), any_points(), any::<bool>(), faults),
             |(meter, points, read_holes, faults)| {

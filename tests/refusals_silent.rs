@@ -263,3 +263,26 @@ fn a_unit_that_falls_silent_on_big_reads_is_asked_for_single_points_before_it_is
         ]
     );
 }
+
+#[test]
+fn a_damaged_answer_between_silences_shows_that_the_unit_is_there() {
+    let mut count = 0;
+    let meter = move |frame: &[u8]| {
+        count += 1;
+        let mut answer = true_reply(frame);
+        match count {
+            1 | 7 => {}
+            4 => answer.truncate(5),
+            _ => return Vec::new(),
+        }
+        vec![(Duration::from_millis(40), answer)]
+    };
+    let mut run = Run::on(meter, &Limits::default());
+    run.patience.retries = 0;
+    let points = points([0, 2, 4, 6, 8, 10, 12]);
+    let (row, _) = run.read(&points);
+    assert_eq!(
+        statuses(&points, &row),
+        "0x0002 timeout\n0x0004 timeout\n0x0006 truncated\n0x0008 timeout\n0x000A timeout\n"
+    );
+}

@@ -16,7 +16,7 @@ use crate::output::csv::{CsvStyle, WIDE_COLUMNS};
 use crate::output::{Heading, Json, JsonLines, LongCsv, Sink, Table, WideCsv};
 use crate::profile::plan::{Cost, Rules};
 use crate::profile::selector::{Numbering, Reading, select};
-use crate::profile::{Limits, Plan, Point, Profile, find};
+use crate::profile::{Limits, Plan, Point, Profile, Setup, find};
 use crate::readings::{Fault, Inquiry, Memory, Row, take};
 
 /// Reads and prints what was asked for, unit by unit.
@@ -32,6 +32,7 @@ pub(super) fn run(
         .map_or_else(Limits::default, |profile| profile.limits.clone());
     let units = units(arguments, &limits)?;
     let points = points(arguments, profile.as_ref())?;
+    let setup = Setup::of(&points, profile.as_ref());
     let function = function(arguments, &limits);
     let rules = profile
         .as_ref()
@@ -39,10 +40,13 @@ pub(super) fn run(
     let patience = line.patience(&limits);
     let cost = Cost::new(line.settings, patience.pause, limits.typical_answer);
     if arguments.dry_run || arguments.plan {
+        let besides: Vec<Point> = setup.besides(&points).cloned().collect();
+        let all = [points, besides.clone()].concat();
         let shown = ShownPlan {
             units: &units,
-            points: &points,
-            plan: &Plan::new(&points, function, &rules, cost),
+            points: &all,
+            besides: &besides,
+            plan: &Plan::new(&all, function, &rules, cost),
             settings: line.settings,
             pause: patience.pause,
             cost,
@@ -62,6 +66,7 @@ pub(super) fn run(
         units: &units,
         meter: profile.as_ref().map_or("", |profile| profile.name.as_str()),
         points: &points,
+        setup: &setup,
         function,
         rules: &rules,
         cost,
@@ -81,6 +86,7 @@ struct Round<'a> {
     units: &'a [Unit],
     meter: &'a str,
     points: &'a [Point],
+    setup: &'a Setup,
     function: ReadFunction,
     rules: &'a Rules,
     cost: Cost,
@@ -134,22 +140,23 @@ fn ask(round: &Round<'_>, unit: Unit, client: &mut Client, report: &mut Report) 
         unit,
         meter: round.meter,
         points: round.points,
+        setup: round.setup,
         function: round.function,
         cost: round.cost,
         patience: round.patience,
     };
     let mut memory = Memory::new(round.rules.clone());
-    let (row, troubles) = take(client, &inquiry, &mut memory);
+    let taken = take(client, &inquiry, &mut memory);
     let place = Place {
         line: round.line,
         unit,
-        points: round.points,
+        points: &taken.points,
         attempts: round.patience.retries + 1,
     };
-    for trouble in &troubles {
+    for trouble in &taken.troubles {
         report.trouble(&place, trouble);
     }
-    row
+    taken.row
 }
 
 /// Refuses options that would do nothing.

@@ -73,6 +73,10 @@ impl Report {
             Trouble::Refused { code, .. } => {
                 self.hint(failure_hint(&Failure::Exception(*code)).map(str::to_owned));
             }
+            Trouble::NoSetting { .. } => self.hint(Some(
+                "check the setup on the meter itself, and that it is the meter of --meter"
+                    .to_owned(),
+            )),
             Trouble::Impossible { .. } => self.hint(Some(
                 "the type, byte order or scale is not this register's, or the meter's value is \
                  broken"

@@ -16,7 +16,10 @@ fn frame(unit: Unit, read: &PlannedRead) -> String {
 /// A plan for people: each request with what it is for and how long it takes, and what that saves.
 pub(super) struct ShownPlan<'a> {
     pub(super) units: &'a [Unit],
+    /// What is read.
     pub(super) points: &'a [Point],
+    /// Those of it that nobody asked for, and that scales depend on.
+    pub(super) besides: &'a [Point],
     pub(super) plan: &'a Plan,
     pub(super) settings: LineSettings,
     /// Kept between requests, where t3.5 is not enough.
@@ -84,7 +87,12 @@ impl fmt::Display for ShownPlan<'_> {
         if *pause > settings.silence() {
             write!(f, "; {} ms between requests", whole(*pause))?;
         }
-        writeln!(f)
+        writeln!(f)?;
+        if !self.besides.is_empty() {
+            let names: Vec<&str> = self.besides.iter().map(|point| &*point.name).collect();
+            writeln!(f, "read besides, for the scales: {}", names.join(", "))?;
+        }
+        Ok(())
     }
 }
 

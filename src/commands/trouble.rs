@@ -43,16 +43,26 @@ pub(super) fn text(place: &Place<'_>, trouble: &Trouble) -> String {
             let what = names_and_registers(&points.collect::<Vec<_>>());
             format!("{at}, {what}: the meter refused: {code}")
         }
+        Trouble::NoSetting { point, registers } => {
+            let words = words(registers);
+            format!(
+                "{at}, {point}: registers {words} hold no such setting; what is scaled by it is missing"
+            )
+        }
         Trouble::Impossible {
             point,
             kind,
             registers,
         } => {
-            let words: Vec<String> = registers.iter().map(|word| format!("{word:04X}")).collect();
-            let words = words.join(" ");
+            let words = words(registers);
             format!("{at}, {point}: registers {words} hold no {kind}")
         }
     }
+}
+
+fn words(registers: &[u16]) -> String {
+    let words: Vec<String> = registers.iter().map(|word| format!("{word:04X}")).collect();
+    words.join(" ")
 }
 
 /// `current_a, current_b (registers 0x0240+1, 0x0250+1)`; registers by address have no other name.

@@ -37,9 +37,15 @@ impl Setup {
         }
     }
 
-    /// The points that are read besides, by name.
+    /// The points that scales depend on, by name.
     pub fn points(&self) -> &[Point] {
         &self.points
+    }
+
+    /// Those of them that are read besides `points`: the ones that are not among them.
+    pub fn besides<'a>(&'a self, points: &'a [Point]) -> impl Iterator<Item = &'a Point> {
+        let is_asked = |needed: &Point| points.iter().any(|point| point.name == needed.name);
+        self.points.iter().filter(move |needed| !is_asked(needed))
     }
 
     /// The names of those that this point needs.
@@ -146,6 +152,11 @@ impl Scales<'_> {
     pub fn code(&self, name: &str) -> Result<u16, Missing> {
         let (_, raw) = self.raw(name)?;
         u16::try_from(raw).map_err(|_| Missing::Mismatch)
+    }
+
+    /// Whether a setup point holds something that can be scaled with.
+    pub fn has(&self, name: &str) -> bool {
+        self.raw(name).is_ok()
     }
 
     /// A setup point and its raw number, which must be one that could have been written there: a

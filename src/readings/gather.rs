@@ -217,8 +217,8 @@ impl Gathering<'_> {
         self.has_answered = true;
         self.silent = 0;
         for read in std::mem::take(&mut self.mute) {
-            let lesson = self.memory.learn_of_one(read, Cause::Silence);
-            self.heed(lesson);
+            let lessons = self.memory.learn_of_one(read, Cause::Silence);
+            self.heed(&lessons);
         }
     }
 
@@ -267,8 +267,8 @@ impl Gathering<'_> {
         };
         self.harvest.lose_refused(&lost, code);
         if is_about_registers && !lost.is_empty() {
-            let lesson = self.memory.learn_of_one(self.shape(read), Cause::Exception);
-            self.heed(lesson);
+            let lessons = self.memory.learn_of_one(self.shape(read), Cause::Exception);
+            self.heed(&lessons);
         }
         if lost.len() < read.points.len() {
             Outcome::Refused(read.clone(), Cause::Exception)
@@ -309,8 +309,9 @@ impl Gathering<'_> {
             }
         }
         if !is_explained && self.harvest.has_all(read) {
-            let lesson = self.memory.learn_from_parts(shape, cause);
-            self.heed(lesson);
+            let holes = read.holes(self.points());
+            let lessons = self.memory.learn_from_parts(shape, &holes, cause);
+            self.heed(&lessons);
         }
         for (part, cause) in refused {
             self.split(&part, cause);
@@ -322,8 +323,10 @@ impl Gathering<'_> {
     }
 
     /// Says what was learned, and plans by it what is still to come.
-    fn heed(&mut self, lesson: Lesson) {
-        info!("unit {}: {lesson}", self.inquiry.unit);
+    fn heed(&mut self, lessons: &[Lesson]) {
+        for lesson in lessons {
+            info!("unit {}: {lesson}", self.inquiry.unit);
+        }
         let to_come = std::mem::take(&mut self.to_come);
         let points = to_come.into_iter().flat_map(|read| read.points);
         self.to_come = self.plan(points).into();

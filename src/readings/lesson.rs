@@ -9,13 +9,13 @@ use crate::profile::plan::Rules;
 /// profile where there is one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Lesson {
-    /// It gives no read that covers registers between points.
+    /// It gives no read that covers registers which no point names.
     NoHoles,
     /// It gives so many registers at once.
     Limit(u16),
     /// It does not give these registers in one request, but each part of them.
     Border(ReadFunction, RegisterRange),
-    /// It does not give these registers, which are one point's.
+    /// It does not give these registers.
     Refused(ReadFunction, RegisterRange),
 }
 

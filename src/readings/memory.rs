@@ -1,6 +1,6 @@
 //! What is known of a unit for as long as the program runs.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::lesson::Lesson;
 use crate::codec::{ReadFunction, RegisterRange};
@@ -25,6 +25,8 @@ pub struct Memory {
     largest: u16,
     /// The reads with holes it answered.
     crossed: BTreeSet<(ReadFunction, RegisterRange)>,
+    /// The registers that its scales depend on, by the names of their points.
+    setup: BTreeMap<String, Vec<u16>>,
 }
 
 /// Why a unit did not give registers.
@@ -55,6 +57,7 @@ impl Memory {
             suspected: Vec::new(),
             largest: 0,
             crossed: BTreeSet::new(),
+            setup: BTreeMap::new(),
         }
     }
 
@@ -98,25 +101,51 @@ impl Memory {
             .retain(|lesson| !lesson.is_refuted_by(read.function, read.range, read.has_holes));
     }
 
-    /// The unit did not give this read, and then every part of it: what that teaches.
-    pub(super) fn learn_from_parts(&mut self, read: Shape, cause: Cause) -> Lesson {
-        let lesson = if read.has_holes {
-            Lesson::NoHoles
-        } else if read.range.count() <= self.largest {
+    /// The unit did not give this read, which has these holes, and then every part of it: what that
+    /// teaches.
+    pub(super) fn learn_from_parts(
+        &mut self,
+        read: Shape,
+        holes: &[RegisterRange],
+        cause: Cause,
+    ) -> Vec<Lesson> {
+        let Shape {
+            function, range, ..
+        } = read;
+        let are_known = holes.iter().all(|hole| self.rules.knows(function, *hole));
+        let lessons = if holes.is_empty() && range.count() <= self.largest {
             // So it is not the number of registers.
-            Lesson::Border(read.function, read.range)
+            vec![Lesson::Border(function, range)]
+        } else if holes.is_empty() {
+            vec![Lesson::Limit(self.largest)]
+        } else if are_known {
+            // Other meters of this profile have these registers; that says nothing of further ones.
+            let gone = holes.iter().map(|hole| Lesson::Refused(function, *hole));
+            gone.collect()
         } else {
-            Lesson::Limit(self.largest)
+            vec![Lesson::NoHoles]
         };
-        self.learn(lesson, cause);
-        lesson
+        for lesson in &lessons {
+            self.learn(*lesson, cause);
+        }
+        lessons
     }
 
     /// The unit does not give these registers, which are one point's.
-    pub(super) fn learn_of_one(&mut self, read: Shape, cause: Cause) -> Lesson {
+    pub(super) fn learn_of_one(&mut self, read: Shape, cause: Cause) -> Vec<Lesson> {
         let lesson = Lesson::Refused(read.function, read.range);
         self.learn(lesson, cause);
-        lesson
+        vec![lesson]
+    }
+
+    /// The registers of a setup point, once it has been read.
+    pub(super) fn setup(&self, point: &str) -> Option<&[u16]> {
+        self.setup.get(point).map(Vec::as_slice)
+    }
+
+    /// Keeps what setup points hold.
+    pub(super) fn keep_setup(&mut self, registers: &BTreeMap<String, Vec<u16>>) {
+        self.setup.extend(registers.clone());
     }
 
     fn learn(&mut self, lesson: Lesson, cause: Cause) {

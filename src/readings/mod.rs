@@ -5,12 +5,15 @@
 //! * `gather` fetches the registers of all points: it plans the reads and copes with a meter that
 //!   does not give them as planned; `harvest` is what it has so far.
 //! * [`memory`] keeps what that taught, for as long as the program runs; `lesson` is one such thing.
-//! * [`take`](mod@take) then says what the registers mean.
+//! * [`take`](mod@take) reads a unit with all that belongs to it; `meaning` says what its registers
+//!   mean.
+//! * [`verify`] puts readings to the test of physical laws.
 
 pub mod fault;
 mod gather;
 mod harvest;
 mod lesson;
+mod meaning;
 pub mod memory;
 pub mod take;
 pub mod verify;
@@ -22,7 +25,7 @@ use crate::profile::Value;
 
 pub use fault::Fault;
 pub use memory::Memory;
-pub use take::{Inquiry, Trouble, take};
+pub use take::{Inquiry, Taken, Trouble, take};
 
 /// One meter read once.
 #[derive(Debug, Clone, PartialEq)]

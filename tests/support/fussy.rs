@@ -150,11 +150,13 @@ impl Run {
             unit: unit(17),
             meter: "",
             points,
+            setup: &meterpoll::profile::Setup::default(),
             function: ReadFunction::HoldingRegisters,
             cost: Cost::new(LineSettings::default(), Duration::ZERO, Duration::ZERO),
             patience: self.patience,
         };
-        take(&mut self.bench.client, &inquiry, &mut self.memory)
+        let taken = take(&mut self.bench.client, &inquiry, &mut self.memory);
+        (taken.row, taken.troubles)
     }
 
     /// The same where nothing goes wrong: every value is the true one.

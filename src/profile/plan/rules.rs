@@ -84,14 +84,14 @@ impl Rules {
         }
     }
 
-    /// The most registers in one read.
-    pub const fn most(&self) -> u16 {
-        self.most
-    }
-
     /// Whether a read may cover registers that none of its points names.
     pub const fn may_cross_holes(&self) -> bool {
         !matches!(self.holes, Holes::None)
+    }
+
+    /// Whether all of these registers belong to ordinary points of the profile.
+    pub fn knows(&self, function: ReadFunction, range: RegisterRange) -> bool {
+        self.registers(function).known.hold(stretch(range))
     }
 
     /// From now on no read has more registers than this.
@@ -129,10 +129,7 @@ impl Rules {
         function: ReadFunction,
         alone: impl IntoIterator<Item = RegisterRange>,
     ) -> Fence<'_> {
-        let registers = match self.table(function) {
-            ReadFunction::HoldingRegisters => &self.holding,
-            ReadFunction::InputRegisters => &self.input,
-        };
+        let registers = self.registers(function);
         let alone = alone.into_iter().map(stretch);
         let alone = alone.filter(|alone| !registers.whole.hold(*alone));
         Fence::new(
@@ -142,6 +139,13 @@ impl Rules {
             &registers.whole,
             registers.refused.clone(),
         )
+    }
+
+    fn registers(&self, function: ReadFunction) -> &Registers {
+        match self.table(function) {
+            ReadFunction::HoldingRegisters => &self.holding,
+            ReadFunction::InputRegisters => &self.input,
+        }
     }
 
     /// The function that stands for all that read the same registers.

@@ -5,8 +5,23 @@ use crate::codec::RegisterRange;
 use crate::profile::point::Point;
 
 impl PlannedRead {
-    /// Whether it covers registers that none of its points names. `points` is the set that the read
-    /// was planned for, here and below.
+    /// The holes in it: stretches of registers that none of its points names. `points` is the set
+    /// that the read was planned for, here and below.
+    pub fn holes(&self, points: &[Point]) -> Vec<RegisterRange> {
+        let mut holes = Vec::new();
+        let mut reach = self.range.start().get();
+        for spot in self.spots(points, &self.points) {
+            let start = spot.range.start().get();
+            let width = start.saturating_sub(reach);
+            // Next to each other they leave none.
+            holes.extend(RegisterRange::new(reach, width).ok());
+            // Past the last register lies nothing that could follow.
+            reach = u16::try_from(spot.range.end()).map_or(reach, |end| reach.max(end));
+        }
+        holes
+    }
+
+    /// Whether there are any.
     pub fn has_holes(&self, points: &[Point]) -> bool {
         runs(&self.spots(points, &self.points)).count() > 1
     }
@@ -65,20 +80,20 @@ fn runs(spots: &[Spot]) -> impl Iterator<Item = &[Spot]> {
     })
 }
 
-/// Sorted spots, cut nearest to the middle of their registers without cutting one of them, and so
-/// that no half is as long as the whole. All of them are the first half where that cannot be.
+/// Sorted spots, cut nearest to the middle of their registers, without cutting one of them where
+/// that can be, and so that the first half is shorter than the whole. The second one then is as
+/// well: a cut at the first register is the furthest from the middle, and cuts a spot.
 fn halves(spots: &[Spot]) -> (&[Spot], &[Spot]) {
-    let start = |range: RegisterRange| u32::from(range.start().get());
-    let first = spots.first().map_or(0, |spot| start(spot.range));
+    let start = |spot: &Spot| u32::from(spot.range.start().get());
+    let first = spots.first().map_or(0, start);
     let end = spots.iter().map(|spot| spot.range.end()).max().unwrap_or(0);
     let mut reach = 0;
     let cuts = spots.windows(2).enumerate().filter_map(|(index, pair)| {
         let [before, after] = pair else { return None };
         reach = reach.max(before.range.end());
-        let cut = start(after.range);
-        let is_cut = before.range != after.range && reach < end && cut > first;
-        // Halves that overlap come last.
-        is_cut.then_some((reach > cut, (2 * cut).abs_diff(first + end), index + 1))
+        let cut = start(after);
+        let from_middle = (2 * cut).abs_diff(first + end);
+        (reach < end).then_some((reach > cut, from_middle, index + 1))
     });
     let (_, _, cut) = cuts.min().unwrap_or((false, 0, spots.len()));
     spots.split_at(cut)
