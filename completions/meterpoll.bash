@@ -58,6 +58,9 @@ _meterpoll() {
             meterpoll__subcmd__help__subcmd__meters,show)
                 cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__show"
                 ;;
+            meterpoll__subcmd__help__subcmd__meters,verify)
+                cmd="meterpoll__subcmd__help__subcmd__meters__subcmd__verify"
+                ;;
             meterpoll__subcmd__meters,check)
                 cmd="meterpoll__subcmd__meters__subcmd__check"
                 ;;
@@ -73,6 +76,9 @@ _meterpoll() {
             meterpoll__subcmd__meters,show)
                 cmd="meterpoll__subcmd__meters__subcmd__show"
                 ;;
+            meterpoll__subcmd__meters,verify)
+                cmd="meterpoll__subcmd__meters__subcmd__verify"
+                ;;
             meterpoll__subcmd__meters__subcmd__help,check)
                 cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__check"
                 ;;
@@ -87,6 +93,9 @@ _meterpoll() {
                 ;;
             meterpoll__subcmd__meters__subcmd__help,show)
                 cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__show"
+                ;;
+            meterpoll__subcmd__meters__subcmd__help,verify)
+                cmd="meterpoll__subcmd__meters__subcmd__help__subcmd__verify"
                 ;;
             *)
                 ;;
@@ -165,7 +174,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__help__subcmd__meters)
-            opts="list show export check"
+            opts="list show export check verify"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -234,6 +243,20 @@ _meterpoll() {
             COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
             return 0
             ;;
+        meterpoll__subcmd__help__subcmd__meters__subcmd__verify)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
         meterpoll__subcmd__help__subcmd__ports)
             opts=""
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
@@ -263,7 +286,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__meters)
-            opts="-q -v -h -V --quiet --verbose --help --version list show export check help"
+            opts="-q -v -h -V --quiet --verbose --help --version list show export check verify help"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -305,7 +328,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__meters__subcmd__help)
-            opts="list show export check help"
+            opts="list show export check verify help"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -388,6 +411,20 @@ _meterpoll() {
             COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
             return 0
             ;;
+        meterpoll__subcmd__meters__subcmd__help__subcmd__verify)
+            opts=""
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 4 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
         meterpoll__subcmd__meters__subcmd__list)
             opts="-q -v -h -V --quiet --verbose --help --version"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
@@ -415,6 +452,88 @@ _meterpoll() {
                     ;;
                 -f)
                     COMPREPLY=($(compgen -W "table csv json" -- "${cur}"))
+                    return 0
+                    ;;
+                *)
+                    COMPREPLY=()
+                    ;;
+            esac
+            COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+            return 0
+            ;;
+        meterpoll__subcmd__meters__subcmd__verify)
+            opts="-a -p -b -P -s -t -q -v -h -V --unit --port --baud --parity --stop-bits --timeout --retries --pause --settle --wait --echo --quiet --verbose --help --version"
+            if [[ ${cur} == -* || ${COMP_CWORD} -eq 3 ]] ; then
+                COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
+                return 0
+            fi
+            case "${prev}" in
+                --unit)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                -a)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                --port)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                -p)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                --baud)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                -b)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                --parity)
+                    COMPREPLY=($(compgen -W "none even odd" -- "${cur}"))
+                    return 0
+                    ;;
+                -P)
+                    COMPREPLY=($(compgen -W "none even odd" -- "${cur}"))
+                    return 0
+                    ;;
+                --stop-bits)
+                    COMPREPLY=($(compgen -W "1 2" -- "${cur}"))
+                    return 0
+                    ;;
+                -s)
+                    COMPREPLY=($(compgen -W "1 2" -- "${cur}"))
+                    return 0
+                    ;;
+                --timeout)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                -t)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                --retries)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                --pause)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                --settle)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                --wait)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                --echo)
+                    COMPREPLY=($(compgen -W "auto on off" -- "${cur}"))
                     return 0
                     ;;
                 *)

@@ -29,7 +29,7 @@ complete -c meterpoll -n "__fish_meterpoll_needs_command" -s v -l verbose -d 'Sa
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -s V -l version -d 'Print version'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
-complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile of your own'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "ports" -d 'List serial ports, without opening any'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "completions" -d 'Print a shell\'s completion script'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
@@ -67,15 +67,16 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s q
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s V -l version -d 'Print version'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check help" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check help" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check help" -s h -l help -d 'Print help'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check help" -s V -l version -d 'Print version'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check help" -f -a "list" -d 'List the meters inside the program and your own'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check help" -f -a "show" -d 'Show a meter: its line, limits and groups, and its points'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check help" -f -a "export" -d 'Print the profile of a meter as the TOML file that it is'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check help" -f -a "check" -d 'Check profile files: whether they load, and what they may lack all the same'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s h -l help -d 'Print help'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -f -a "list" -d 'List the meters inside the program and your own'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -f -a "show" -d 'Show a meter: its line, limits and groups, and its points'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -f -a "export" -d 'Print the profile of a meter as the TOML file that it is'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -f -a "check" -d 'Check profile files: whether they load, and what they may lack all the same'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -f -a "verify" -d 'Read a live meter and test what its profile says must hold: sums, powers, frequency'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from list" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from list" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from list" -s h -l help -d 'Print help'
@@ -95,10 +96,31 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_s
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from check" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from check" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from check" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s a -l unit -d 'The units to read: 17, or 1,2,5-9' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
+even\t'Even parity, the standard\'s default'
+odd\t'Odd parity'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
+2\t'Two stop bits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms; a late one is waited for as long again and thrown away [default: the meter\'s longest answer time, else 1s]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l wait -d 'How long to wait for a port that another program holds' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
+on\t'The line echoes'
+off\t'The line does not echo'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -s V -l version -d 'Print version'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from help" -f -a "list" -d 'List the meters inside the program and your own'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from help" -f -a "show" -d 'Show a meter: its line, limits and groups, and its points'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from help" -f -a "export" -d 'Print the profile of a meter as the TOML file that it is'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from help" -f -a "check" -d 'Check profile files: whether they load, and what they may lack all the same'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from help" -f -a "verify" -d 'Read a live meter and test what its profile says must hold: sums, powers, frequency'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
@@ -109,7 +131,7 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s v -l
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s V -l version -d 'Print version'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile of your own'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "ports" -d 'List serial ports, without opening any'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "completions" -d 'Print a shell\'s completion script'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
@@ -117,3 +139,4 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_see
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "show" -d 'Show a meter: its line, limits and groups, and its points'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "export" -d 'Print the profile of a meter as the TOML file that it is'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "check" -d 'Check profile files: whether they load, and what they may lack all the same'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "verify" -d 'Read a live meter and test what its profile says must hold: sums, powers, frequency'

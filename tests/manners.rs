@@ -235,7 +235,7 @@ fn a_port_that_looks_like_the_simulated_line_is_told_its_name() {
         .argument("")
         .code(2)
         .stderr(
-            "error: the port is empty\n\
+            "error: no port is named\n\
              hint: give a serial port with --port, or sim: for the simulated line\n",
         )
         .run();

@@ -34,7 +34,7 @@ fn receive(line: &mut SimulatedLine) -> Vec<u8> {
     bytes[..count].to_vec()
 }
 
-/// The registers that unit 17 answers to a request.
+/// The registers that are answered to a request.
 fn registers(line: &mut SimulatedLine, request: &[u8]) -> Vec<u16> {
     line.send(request).unwrap();
     match decode_reply(&receive(line)) {
@@ -93,6 +93,50 @@ fn every_meter_on_the_line_answers_for_its_own_unit() {
         let request = sealed(&[unit, 0x08, 0x00, 0x00, 0x00, 0x00]);
         line.send(&request).unwrap();
         assert_eq!(receive(&mut line), request);
+    }
+}
+
+#[test]
+fn there_is_one_meter_of_each_kind_on_the_line() {
+    let found: Vec<_> = SimulatedLine::meters(1)
+        .iter()
+        .map(|meter| (meter.unit().get(), meter.profile().name.clone()))
+        .collect();
+    let expected = [(1, "em24"), (2, "pm290"), (3, "em21"), (17, "pqm")];
+    assert_eq!(found, expected.map(|(unit, name)| (unit, name.to_owned())));
+}
+
+#[test]
+fn each_unit_shows_its_own_meter() {
+    // The PM290 is busy at the full hour.
+    let clock = Arc::new(FakeClock::starting("2026-05-04T08:15:00Z"));
+    let mut line = SimulatedLine::new(1, clock);
+    // The identification code, the setup, the identification code, the product code.
+    for (request, expected) in [
+        (&[0x01, 0x04, 0x00, 0x0B, 0x00, 0x01], 70),
+        (&[0x02, 0x03, 0x09, 0x02, 0x00, 0x01], 200),
+        (&[0x03, 0x04, 0x00, 0x0B, 0x00, 0x01], 57),
+        (&[0x11, 0x03, 0x00, 0x00, 0x00, 0x01], 65),
+    ] {
+        assert_eq!(registers(&mut line, &sealed(request)), [expected]);
+    }
+}
+
+#[test]
+fn other_units_and_broadcasts_are_met_with_silence() {
+    let (mut line, _) = line();
+    for unit in (0..=255).filter(|unit| ![1, 2, 3, 17].contains(unit)) {
+        line.send(&sealed(&[unit, 0x08, 0x00, 0x00, 0x00, 0x00]))
+            .unwrap();
+        assert_eq!(receive(&mut line), Vec::<u8>::new(), "unit {unit}");
+    }
+    // To all: clear the demands of a PM290, and those of an EM24.
+    for body in [
+        [0x00, 0x06, 0x01, 0x18, 0x00, 0x00],
+        [0x00, 0x06, 0x30, 0x05, 0x00, 0x01],
+    ] {
+        line.send(&sealed(&body)).unwrap();
+        assert_eq!(receive(&mut line), Vec::<u8>::new());
     }
 }
 

@@ -1,14 +1,13 @@
 //! What the simulated PQM shows: quantities that agree, counters that rise, values that move.
 
-mod support {
-    pub(crate) mod measured;
-}
-
-use jiff::{SignedDuration, Timestamp};
+use jiff::SignedDuration;
 use meterpoll::sim::{Model, Pqm};
 use proptest::prelude::*;
 
-use support::measured::{at, float, number, raw, seconds, words};
+#[path = "support/simulated.rs"]
+mod simulated;
+
+use simulated::{at, float, mean_before, moment_of_2026, number, raw, seconds, words};
 
 /// The points that have a minimum and a maximum.
 const MEASURED: [&str; 32] = [
@@ -81,21 +80,6 @@ const COUNTERS: [&str; 9] = [
     "pulse_input_2",
     "pulse_input_total",
 ];
-
-/// The mean raw value of a point over the `span` seconds that end at `end`.
-fn mean_before(pqm: &Pqm, point: &str, end: Timestamp, span: i64) -> f64 {
-    let step = span / 300;
-    let sum: f64 = (0..300)
-        .map(|sample| float(raw(pqm, point, end - seconds(step * sample + step / 2))))
-        .sum();
-    sum / 300.0
-}
-
-/// Any moment of a year, to the millisecond.
-fn moment_of_2026() -> impl Strategy<Value = Timestamp> {
-    (0_i64..365 * 86_400_000)
-        .prop_map(|moment| at("2026-01-01T00:00:00Z") + SignedDuration::from_millis(moment))
-}
 
 proptest! {
     #[test]
@@ -362,6 +346,35 @@ fn product_information_is_that_of_a_pqm() {
     assert_eq!(words(&pqm, "serial_number", now).len(), 4);
     // March 21, 2006.
     assert_eq!(words(&pqm, "calibration_date", now), [0x0315, 0x07D6]);
+}
+
+#[test]
+fn a_seed_and_a_moment_give_the_numbers_they_have_always_given() {
+    let now = at("2026-05-04T08:00:00.25Z");
+    for (point, value) in [
+        ("current_a", 381),
+        ("current_n", 45),
+        ("voltage_an", 344),
+        ("voltage_ab", 597),
+        ("voltage_unbalance", 4),
+        ("real_power_b", 12_025),
+        ("real_power_total", 35_758),
+        ("reactive_power_total", 13_508),
+        ("apparent_power_total", 38_224),
+        ("power_factor_total", 94),
+        ("frequency", 6001),
+        ("demand_real", 35_977),
+        ("demand_current_c", 361),
+        ("demand_real_max", 42_771),
+        ("current_a_max", 454),
+        ("energy_real_pos", 20_393_775),
+        ("energy_reactive_pos", 7_323_706),
+        ("energy_apparent", 21_674_835),
+        ("energy_real_24h", 8820),
+        ("energy_cost_total", 203_937_750),
+    ] {
+        assert_eq!(raw(&Pqm::new(17), point, now), value, "{point}");
+    }
 }
 
 #[test]

@@ -1,12 +1,11 @@
 //! What the simulated PQM keeps beside its measured values: distortion, pulses, records, setpoints.
 
-mod support {
-    pub(crate) mod measured;
-}
+#[path = "support/simulated.rs"]
+mod simulated;
 
 use meterpoll::sim::Pqm;
 
-use support::measured::{at, float, raw, seconds};
+use simulated::{at, float, raw, seconds};
 
 #[test]
 fn a_derating_factor_is_the_crest_factor_of_a_sine_by_that_of_the_current() {

@@ -6,8 +6,7 @@ use std::io::{Read, Write};
 use std::time::Duration;
 
 use meterpoll::codec::rtu::check;
-use meterpoll::codec::{Unit, UnitRange};
-use meterpoll::sim::Meter;
+use meterpoll::sim::SimulatedLine;
 use meterpoll::transport::serial::Serial;
 use meterpoll::transport::{LineSettings, SystemClock};
 use serialport::{SerialPort, TTYPort};
@@ -25,24 +24,29 @@ fn sealed(body: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn the_meter_on_a_terminal_answers_until_the_line_hangs_up() {
+fn the_meters_on_a_terminal_answer_until_the_line_hangs_up() {
     let (mut client, terminal) = TTYPort::pair().unwrap();
     let path = terminal.name().unwrap();
     // Both ends of a pair are held exclusively: only this one is handed over.
     drop(terminal);
     let mut server = Serial::open(&path, LineSettings::default()).unwrap();
     let serving = std::thread::spawn(move || {
-        let meter = Meter::pqm(Unit::new(17, UnitRange::Standard).unwrap(), 1);
-        simulated_meter::serve(&mut server, &meter, &SystemClock::new())
+        simulated_meter::serve(&mut server, &SimulatedLine::meters(1), &SystemClock::new())
     });
     client.set_timeout(Duration::from_secs(10)).unwrap();
 
     let illegal = sealed(&[0x11, 0x2B, 0x0E, 0x01, 0x00]);
     let refusal = sealed(&[0x11, 0xAB, 0x01]);
     let loopback = &LOOPBACK[..];
+    // Unit 1 has no more than 11 registers to give.
+    let (much, too_much) = (sealed(&[1, 4, 0, 0, 0, 12]), sealed(&[1, 0x84, 3]));
+    let echo = |unit| sealed(&[unit, 8, 0, 0, 0xA5, 0x37]);
     for (request, answer) in [
         (loopback, loopback),
         (&illegal, &refusal),
+        (&much, &too_much),
+        (&echo(2), &echo(2)),
+        (&echo(3), &echo(3)),
         (loopback, loopback),
     ] {
         client.write_all(request).unwrap();

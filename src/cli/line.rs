@@ -17,8 +17,7 @@ pub struct LineArguments {
         long,
         env = "METERPOLL_PORT",
         hide_env = true,
-        value_name = "PORT",
-        required_unless_present_any = ["dry_run", "plan"]
+        value_name = "PORT"
     )]
     pub port: Option<String>,
     /// Speed in bits a second [default: the meter's factory setting, else 9600]

@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum, ValueHint};
 
+use super::line::LineArguments;
+use super::values::Units;
+
 /// Arguments of `meters`.
 #[derive(Debug, Args)]
 pub struct Meters {
@@ -23,6 +26,8 @@ pub enum MetersCommand {
     Export(ExportMeter),
     /// Check profile files: whether they load, and what they may lack all the same
     Check(CheckMeters),
+    /// Read a live meter and test what its profile says must hold: sums, powers, frequency
+    Verify(Box<VerifyMeter>),
 }
 
 const SHOW_EXAMPLES: &str = "\
@@ -85,4 +90,27 @@ pub struct CheckMeters {
     /// Profile files; what is wrong with one goes to stderr, advice to stdout
     #[arg(value_name = "FILE", required = true, value_hint = ValueHint::FilePath)]
     pub files: Vec<PathBuf>,
+}
+
+const VERIFY_EXAMPLES: &str = "\
+Examples:
+  meterpoll meters verify pqm -p sim: -a 17
+  meterpoll meters verify ./mine.toml -p /dev/ttyUSB0 -a 1
+
+Ends with 0 when something could be tested and all of it holds, with 1 when something fails, could
+not be read, or nothing flows that could be tested.";
+
+/// Arguments of `meters verify`.
+#[derive(Debug, Args)]
+#[command(after_help = VERIFY_EXAMPLES)]
+pub struct VerifyMeter {
+    /// A name that `meters list` shows, or a profile file
+    #[arg(value_name = "METER")]
+    pub meter: String,
+    /// The units to read: 17, or 1,2,5-9
+    #[arg(short = 'a', long, aliases = ["unit-id", "slave"], value_name = "UNITS")]
+    pub unit: Units,
+    /// The line.
+    #[command(flatten)]
+    pub line: LineArguments,
 }

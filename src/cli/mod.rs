@@ -16,7 +16,9 @@ use clap::{ArgAction, Args, Parser, Subcommand};
 use clap_complete::Shell;
 
 pub use line::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
-pub use meters::{CheckMeters, ExportMeter, Meters, MetersCommand, ShowFormat, ShowMeter};
+pub use meters::{
+    CheckMeters, ExportMeter, Meters, MetersCommand, ShowFormat, ShowMeter, VerifyMeter,
+};
 pub use read_registers::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
 pub use usage::{Usage, completion_script, parse};
 pub use values::Units;
@@ -84,7 +86,7 @@ pub struct Verbosity {
 pub enum Command {
     /// Read points of a meter by name, or raw registers by address
     ReadRegisters(Box<ReadRegisters>),
-    /// List known meters, show one, print its profile, check a profile of your own
+    /// List known meters, show one, print its profile, check a profile, verify it on a live meter
     Meters(Meters),
     /// List serial ports, without opening any
     Ports,

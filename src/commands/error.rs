@@ -33,8 +33,14 @@ pub enum CommandError {
         /// What it is for.
         format: &'static str,
     },
+    /// A meter whose profile says nothing that could be tested.
+    #[error("the profile of {meter} has no [[identities]] that could be tested")]
+    NoIdentities {
+        /// The meter.
+        meter: String,
+    },
     /// No port was named, and something is to be sent.
-    #[error("the port is empty")]
+    #[error("no port is named")]
     NoPort,
     /// Something that looks like the simulated line and is not.
     #[error("there is no simulated line '{port}'")]

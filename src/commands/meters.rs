@@ -4,6 +4,7 @@ mod check;
 mod export;
 mod list;
 mod show;
+mod verify;
 
 use super::report::Report;
 use super::{CommandError, ExitCode};
@@ -16,5 +17,6 @@ pub(super) fn run(arguments: &Meters, report: &mut Report) -> Result<ExitCode, C
         Some(MetersCommand::Show(arguments)) => show::run(arguments, report),
         Some(MetersCommand::Export(arguments)) => export::run(arguments),
         Some(MetersCommand::Check(arguments)) => check::run(arguments, report),
+        Some(MetersCommand::Verify(arguments)) => verify::run(arguments, report),
     }
 }

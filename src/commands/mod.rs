@@ -1,6 +1,7 @@
 //! One file a subcommand: arguments in, readings out. The only place that sees both the command
 //! line and the rest.
 
+mod asking;
 mod completions;
 mod error;
 mod exit_code;

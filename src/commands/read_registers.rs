@@ -3,21 +3,20 @@
 use std::collections::BTreeSet;
 use std::io::{self, IsTerminal, Write};
 
+use super::asking::{Asking, units};
 use super::open_line::LinePlan;
 use super::report::{self, Report};
 use super::show_plan::ShownPlan;
 use super::signals::Stop;
-use super::trouble::Place;
 use super::{CommandError, ExitCode, print};
 use crate::cli::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
-use crate::client::{Client, Patience};
+use crate::client::Client;
 use crate::codec::{FunctionCode, ReadFunction, Unit};
 use crate::output::csv::{CsvStyle, WIDE_COLUMNS};
 use crate::output::{Heading, Json, JsonLines, LongCsv, Sink, Table, WideCsv};
-use crate::profile::plan::{Cost, Rules};
 use crate::profile::selector::{Numbering, Reading, select};
-use crate::profile::{Limits, Plan, Point, Profile, Setup, find};
-use crate::readings::{Fault, Inquiry, Memory, Row, take};
+use crate::profile::{Limits, Point, Profile, find};
+use crate::readings::{Fault, Row};
 
 /// Reads and prints what was asked for, unit by unit.
 pub(super) fn run(
@@ -30,80 +29,62 @@ pub(super) fn run(
     let limits = profile
         .as_ref()
         .map_or_else(Limits::default, |profile| profile.limits.clone());
-    let units = units(arguments, &limits)?;
+    let units = units(&arguments.unit, &limits)?;
     let points = points(arguments, profile.as_ref())?;
-    let setup = Setup::of(&points, profile.as_ref());
     let function = function(arguments, &limits);
-    let rules = profile
-        .as_ref()
-        .map_or_else(|| Rules::new(&limits), Rules::of);
-    let patience = line.patience(&limits);
-    let cost = Cost::new(line.settings, patience.pause, limits.typical_answer);
+    let asking = Asking::new(&line, profile.as_ref(), &points, function);
     if arguments.dry_run || arguments.plan {
-        let besides: Vec<Point> = setup.besides(&points).cloned().collect();
-        let all = [points, besides.clone()].concat();
-        let shown = ShownPlan {
-            units: &units,
-            points: &all,
-            besides: &besides,
-            plan: &Plan::new(&all, function, &rules, cost),
-            settings: line.settings,
-            pause: patience.pause,
-            cost,
-        };
-        let text = if arguments.plan {
-            shown.to_string()
-        } else {
-            shown.frames()
-        };
-        return print(text.as_bytes());
+        return show(arguments, &line, &units, &asking);
     }
 
     let mut client = line.open()?;
     // From here on a row is in hand; before, a signal ends the program where it is.
     let stop = Stop::listen();
-    let round = Round {
-        units: &units,
-        meter: profile.as_ref().map_or("", |profile| profile.name.as_str()),
-        points: &points,
-        setup: &setup,
-        function,
-        rules: &rules,
-        cost,
-        patience,
-        line: &line.name(),
-        stop: &stop,
-    };
-    let result = read(arguments, &round, &mut client, report);
+    let result = read(arguments, &units, &asking, &stop, &mut client, report);
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
     // lost has none.
     let _ = client.finish();
     result.map(|code| stop.requested().unwrap_or(code))
 }
 
-/// What is read: every unit once.
-struct Round<'a> {
-    units: &'a [Unit],
-    meter: &'a str,
-    points: &'a [Point],
-    setup: &'a Setup,
-    function: ReadFunction,
-    rules: &'a Rules,
-    cost: Cost,
-    patience: Patience,
-    line: &'a str,
-    stop: &'a Stop,
+/// Prints what would be sent, and sends nothing.
+fn show(
+    arguments: &ReadRegisters,
+    line: &LinePlan<'_>,
+    units: &[Unit],
+    asking: &Asking<'_>,
+) -> Result<ExitCode, CommandError> {
+    let besides: Vec<Point> = asking.setup.besides(asking.points).cloned().collect();
+    let all = [asking.points, &besides].concat();
+    let shown = ShownPlan {
+        units,
+        points: &all,
+        besides: &besides,
+        plan: &asking.plan(&all),
+        settings: line.settings,
+        pause: asking.patience.pause,
+        cost: asking.cost,
+    };
+    let text = if arguments.plan {
+        shown.to_string()
+    } else {
+        shown.frames()
+    };
+    print(text.as_bytes())
 }
 
+/// Reads every unit once.
 fn read(
     arguments: &ReadRegisters,
-    round: &Round<'_>,
+    units: &[Unit],
+    asking: &Asking<'_>,
+    stop: &Stop,
     client: &mut Client,
     report: &mut Report,
 ) -> Result<ExitCode, CommandError> {
-    let heading = match round.units.len() {
+    let heading = match units.len() {
         _ if !report.is_quiet() => Heading::Full {
-            line: round.line.to_owned(),
+            line: asking.line.clone(),
         },
         0 | 1 => Heading::None,
         _ => Heading::Unit,
@@ -112,18 +93,19 @@ fn read(
     let mut delivered = 0;
     let mut faults = Vec::new();
     let mut lost = 0;
-    for unit in round.units.iter().copied() {
+    for unit in units.iter().copied() {
         let row = if lost == 0 {
-            ask(round, unit, client, report)
+            asking.ask(unit, client, report).row
         } else {
-            let count = round.points.len();
-            Row::missing(client.utc_now(), round.meter, unit, count, Fault::Port)
+            let count = asking.points.len();
+            Row::missing(client.utc_now(), asking.meter, unit, count, Fault::Port)
         };
         lost += usize::from(row.worst() == Some(Fault::Port));
-        sink.row(round.points, &row).map_err(CommandError::Output)?;
+        sink.row(asking.points, &row)
+            .map_err(CommandError::Output)?;
         faults.extend(row.faults());
         delivered += row.readings.len() - row.faults().count();
-        if round.stop.requested().is_some() {
+        if stop.requested().is_some() {
             break;
         }
     }
@@ -132,31 +114,6 @@ fn read(
         report::untried_units(lost - 1);
     }
     Ok(ExitCode::of(delivered, &faults))
-}
-
-/// Reads one unit and tells what went wrong.
-fn ask(round: &Round<'_>, unit: Unit, client: &mut Client, report: &mut Report) -> Row {
-    let inquiry = Inquiry {
-        unit,
-        meter: round.meter,
-        points: round.points,
-        setup: round.setup,
-        function: round.function,
-        cost: round.cost,
-        patience: round.patience,
-    };
-    let mut memory = Memory::new(round.rules.clone());
-    let taken = take(client, &inquiry, &mut memory);
-    let place = Place {
-        line: round.line,
-        unit,
-        points: &taken.points,
-        attempts: round.patience.retries + 1,
-    };
-    for trouble in &taken.troubles {
-        report.trouble(&place, trouble);
-    }
-    taken.row
 }
 
 /// Refuses options that would do nothing.
@@ -174,13 +131,6 @@ fn effects(arguments: &ReadRegisters) -> Result<(), CommandError> {
         _ if arguments.units && !is_csv => no_effect("--units", "--format csv"),
         _ => Ok(()),
     }
-}
-
-fn units(arguments: &ReadRegisters, limits: &Limits) -> Result<Vec<Unit>, CommandError> {
-    let numbers = arguments.unit.0.iter();
-    numbers
-        .map(|number| Unit::new(*number, limits.units).map_err(CommandError::Unit))
-        .collect()
 }
 
 fn points(

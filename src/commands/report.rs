@@ -132,6 +132,7 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::ColumnClash { .. }
         | CommandError::Function { .. }
         | CommandError::NoEffect { .. }
+        | CommandError::NoIdentities { .. }
         | CommandError::NoPort
         | CommandError::UnknownSimulation { .. }
         | CommandError::Find(_)

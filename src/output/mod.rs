@@ -8,6 +8,7 @@ pub mod csv;
 pub mod json;
 pub mod profile;
 pub mod table;
+pub mod verification;
 
 use std::io;
 

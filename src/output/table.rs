@@ -55,12 +55,7 @@ impl<W: Write> Sink for Table<W> {
         self.begun = true;
         match &self.heading {
             Heading::Full { line } => {
-                let meter = match row.meter.as_str() {
-                    "" => String::new(),
-                    meter => format!("{meter}, "),
-                };
-                let time = row.time.strftime("%Y-%m-%d %H:%M:%S UTC");
-                text = format!("{text}{meter}unit {} on {line}, {time}\n\n", row.unit);
+                text = format!("{text}{}\n", heading(row, line));
             }
             Heading::Unit => text = format!("{text}unit {}\n", row.unit),
             Heading::None => {}
@@ -77,6 +72,16 @@ impl<W: Write> Sink for Table<W> {
     fn finish(&mut self) -> io::Result<()> {
         self.out.flush()
     }
+}
+
+/// Which meter was read, where and when.
+pub(super) fn heading(row: &Row, line: &str) -> String {
+    let meter = match row.meter.as_str() {
+        "" => String::new(),
+        meter => format!("{meter}, "),
+    };
+    let time = row.time.strftime("%Y-%m-%d %H:%M:%S UTC");
+    format!("{meter}unit {} on {line}, {time}\n", row.unit)
 }
 
 fn grid(points: &[Point], row: &Row) -> String {

@@ -25,7 +25,7 @@ const MOST_SILENT_READS: usize = 3;
 /// wrong.
 pub(super) fn gather(
     client: &mut Client,
-    inquiry: &Inquiry<'_>,
+    inquiry: &Inquiry<'_, '_>,
     memory: &mut Memory,
 ) -> (Vec<Result<Vec<u16>, Fault>>, Vec<Trouble>) {
     memory.begin();
@@ -54,7 +54,7 @@ pub(super) fn gather(
 
 struct Gathering<'a> {
     client: &'a mut Client,
-    inquiry: &'a Inquiry<'a>,
+    inquiry: &'a Inquiry<'a, 'a>,
     memory: &'a mut Memory,
     harvest: Harvest,
     /// The reads of the plan that were not tried yet.

@@ -12,7 +12,7 @@ use crate::profile::{Point, Setup};
 
 /// What is asked of a unit.
 #[derive(Debug, Clone, Copy)]
-pub struct Inquiry<'a> {
+pub struct Inquiry<'a, 's> {
     /// The unit.
     pub unit: Unit,
     /// The meter's name; empty for raw registers of an unknown one.
@@ -20,7 +20,7 @@ pub struct Inquiry<'a> {
     /// What is read.
     pub points: &'a [Point],
     /// What the scales of these points depend on.
-    pub setup: &'a Setup,
+    pub setup: &'s Setup,
     /// The function for points that have none of their own.
     pub function: ReadFunction,
     /// What reads cost on this line while the meter's answer time has not been measured.
@@ -84,7 +84,7 @@ pub struct Taken<'a> {
 /// setup registers that their scales depend on, unless they are known. A unit that does not answer
 /// at all, or stops answering, is not asked further: every other read would cost a time-out as
 /// well.
-pub fn take<'a>(client: &mut Client, inquiry: &Inquiry<'a>, memory: &mut Memory) -> Taken<'a> {
+pub fn take<'a>(client: &mut Client, inquiry: &Inquiry<'a, '_>, memory: &mut Memory) -> Taken<'a> {
     let time = client.utc_now();
     let asked = inquiry.points;
     let is_known = |needed: &&Point| memory.setup(&needed.name).is_some();

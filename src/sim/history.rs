@@ -4,17 +4,17 @@
 
 use jiff::Timestamp;
 
-use super::load::{Load, Quantity, Values};
+use super::load::{Installation, Load, Quantity, Values};
 use super::wave::{Moment, PERIOD_SECONDS, Wave};
 
 /// Seconds between two samples.
 const STEP: u32 = 180;
 /// Samples in a week.
 const STEPS: usize = (PERIOD_SECONDS / STEP) as usize;
-/// Samples between two sums that are kept, and in the window of the demand: a quarter of an hour.
-const STEPS_KEPT: usize = 5;
-/// Seconds in the window of the demand.
-const WINDOW: u32 = 15 * 60;
+/// Samples between two sums that are kept: a quarter of an hour.
+const STEPS_KEPT: u32 = 5;
+/// Seconds between two sums that are kept.
+const KEPT: u32 = STEP * STEPS_KEPT;
 
 /// A quantity that is summed over time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,10 +33,45 @@ pub enum Metered {
     CurrentC,
     /// Neutral current, A.
     CurrentN,
+    /// Phase A real power, W.
+    RealPowerA,
+    /// Phase B real power, W.
+    RealPowerB,
+    /// Phase C real power, W.
+    RealPowerC,
+}
+
+impl Metered {
+    /// How many there are.
+    const COUNT: usize = Self::RealPowerC as usize + 1;
+
+    /// All of them, in their order.
+    const ALL: [Self; Self::COUNT] = [
+        Self::RealPower,
+        Self::ReactivePower,
+        Self::ApparentPower,
+        Self::CurrentA,
+        Self::CurrentB,
+        Self::CurrentC,
+        Self::CurrentN,
+        Self::RealPowerA,
+        Self::RealPowerB,
+        Self::RealPowerC,
+    ];
+
+    /// The seconds that its demand is a mean of.
+    const fn window(self, installation: &Installation) -> u32 {
+        match self {
+            Self::CurrentA | Self::CurrentB | Self::CurrentC | Self::CurrentN => {
+                installation.current_window
+            }
+            _ => installation.power_window,
+        }
+    }
 }
 
 /// What each [`Metered`] sums, in its order.
-const SUMMED: [Quantity; Metered::CurrentN as usize + 1] = [
+const SUMMED: [Quantity; Metered::COUNT] = [
     Quantity::RealPowerTotal,
     Quantity::ReactivePowerTotal,
     Quantity::ApparentPowerTotal,
@@ -44,14 +79,17 @@ const SUMMED: [Quantity; Metered::CurrentN as usize + 1] = [
     Quantity::CurrentB,
     Quantity::CurrentC,
     Quantity::CurrentN,
+    Quantity::RealPowerA,
+    Quantity::RealPowerB,
+    Quantity::RealPowerC,
 ];
 
 /// A sum of each [`Metered`], in its unit times seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sums([f64; SUMMED.len()]);
+pub struct Sums([f64; Metered::COUNT]);
 
 impl Sums {
-    const ZERO: Self = Self([0.0; SUMMED.len()]);
+    const ZERO: Self = Self([0.0; Metered::COUNT]);
 
     /// The sum of one of them, in its unit times seconds.
     pub const fn get(&self, metered: Metered) -> f64 {
@@ -169,8 +207,10 @@ impl History {
             previous = values;
         }
         Self {
-            demands: demands(&sums, &sum),
-            kept: sums.into_iter().step_by(STEPS_KEPT).collect(),
+            demands: Metered::ALL
+                .map(|metered| demand(metered, load.installation(), &sums))
+                .to_vec(),
+            kept: sums.into_iter().step_by(STEPS_KEPT as usize).collect(),
             whole_week: sum,
             values: finders.iter().map(Finder::extremes).collect(),
         }
@@ -178,10 +218,10 @@ impl History {
 
     /// What has added up since 2020; nothing before.
     pub fn sums(&self, load: &Load, moment: Moment) -> Sums {
-        let index = moment.second / WINDOW;
+        let index = moment.second / KEPT;
         // One sum for every quarter of the week that a moment can lie in.
         let mut sums = self.kept[index as usize];
-        let mut second = index * WINDOW;
+        let mut second = index * KEPT;
         let mut from = load.at(f64::from(second));
         while second + STEP <= moment.second {
             second += STEP;
@@ -197,12 +237,25 @@ impl History {
         sums
     }
 
-    /// The mean of each [`Metered`] over the last quarter of an hour, in its unit.
+    /// The mean of each [`Metered`] over its window, which ends now, in its unit.
     pub fn demand(&self, load: &Load, moment: Moment) -> Sums {
-        let earlier = self.sums(load, moment.earlier(WINDOW));
-        let mut means = self.sums(load, moment).since(&earlier);
-        for mean in &mut means.0 {
-            *mean /= f64::from(WINDOW);
+        let now = self.sums(load, moment);
+        let mean = |window: u32| {
+            let mut mean = now.since(&self.sums(load, moment.earlier(window)));
+            for sum in &mut mean.0 {
+                *sum /= f64::from(window);
+            }
+            mean
+        };
+        let installation = load.installation();
+        let mut means = mean(installation.power_window);
+        if installation.current_window != installation.power_window {
+            let currents = mean(installation.current_window);
+            for metered in Metered::ALL {
+                if metered.window(installation) == installation.current_window {
+                    means.0[metered as usize] = currents.get(metered);
+                }
+            }
         }
         means
     }
@@ -215,31 +268,37 @@ impl History {
 
     /// The extremes of a demand.
     pub fn of_demand(&self, metered: Metered) -> &Extremes {
-        // `demands` finds one for every metered quantity.
+        // `of` finds one for every metered quantity.
         &self.demands[metered as usize]
     }
 }
 
-/// The extremes of all demands over a week of `sums`, from 0 to the whole week's sum.
-fn demands(sums: &[Sums], whole_week: &Sums) -> Vec<Extremes> {
-    let mut finders: Vec<Finder> = Vec::new();
-    let mut second = 0;
-    for (index, sum) in sums.iter().enumerate() {
-        // The window reaches back into the week before, which was the same.
-        let means = if index >= STEPS_KEPT {
-            sum.since(&sums[index - STEPS_KEPT])
-        } else {
-            let left = whole_week.since(&sums[index + STEPS - STEPS_KEPT]);
-            sum.since(&Sums::ZERO.since(&left))
-        };
-        let means = means.0.map(|sum| sum / f64::from(WINDOW));
-        if finders.is_empty() {
-            finders = means.into_iter().map(Finder::new).collect();
-        }
-        for (finder, mean) in finders.iter_mut().zip(means) {
-            finder.see(mean, second);
-        }
-        second += STEP;
+/// The extremes of a demand over a week of `sums`, from 0 to the whole week's sum.
+fn demand(metered: Metered, installation: &Installation, sums: &[Sums]) -> Extremes {
+    let window = metered.window(installation);
+    let mean = |index: usize| {
+        let risen = sums[index].get(metered) - before(metered, window, sums, index);
+        risen / f64::from(window)
+    };
+    let mut finder = Finder::new(mean(0));
+    for (index, second) in (0..sums.len()).zip((0..).step_by(STEP as usize)) {
+        finder.see(mean(index), second);
     }
-    finders.iter().map(Finder::extremes).collect()
+    finder.extremes()
+}
+
+/// What had been added up `window` seconds before a sample: below 0 where that was in the week
+/// before, which was the same. Between samples the sum is taken to rise evenly.
+fn before(metered: Metered, window: u32, sums: &[Sums], index: usize) -> f64 {
+    let steps_before = |steps: usize| {
+        let sum = |index: usize| sums[index].get(metered);
+        if index >= steps {
+            sum(index - steps)
+        } else {
+            sum(index + STEPS - steps) - sum(STEPS)
+        }
+    };
+    let steps = (window / STEP) as usize;
+    let part = f64::from(window % STEP) / f64::from(STEP);
+    steps_before(steps) * (1.0 - part) + steps_before(steps + 1) * part
 }

@@ -19,17 +19,33 @@ pub struct SimulatedLine {
 }
 
 impl SimulatedLine {
-    /// The unit of the one meter on the line that [`Self::new`] makes.
+    /// The unit of the EM24-DIN on the line that [`Self::new`] makes.
+    pub const EM24_UNIT: u16 = 1;
+    /// The unit of its PM290.
+    pub const PM290_UNIT: u16 = 2;
+    /// The unit of its EM21.
+    pub const EM21_UNIT: u16 = 3;
+    /// The unit of its PQM.
     pub const PQM_UNIT: u16 = 17;
 
-    /// A line with one PQM on it, unit 17, whose load comes from `seed`.
+    /// A line with one meter of each kind on it; their loads come from `seed`.
+    pub fn new(seed: u64, clock: Arc<dyn Clock>) -> Self {
+        Self::with_meters(Self::meters(seed), clock)
+    }
+
+    /// The meters on the line that [`Self::new`] makes, each with a load of its own.
     ///
     /// # Panics
-    /// Never: 17 is a unit.
-    pub fn new(seed: u64, clock: Arc<dyn Clock>) -> Self {
-        #[expect(clippy::expect_used, reason = "a constant in range")]
-        let unit = Unit::new(Self::PQM_UNIT, UnitRange::Standard).expect("17 is a unit");
-        Self::with_meters(vec![Meter::pqm(unit, seed)], clock)
+    /// Never: the constants are units.
+    pub fn meters(seed: u64) -> Vec<Meter> {
+        #[expect(clippy::expect_used, reason = "constants in range")]
+        let unit = |number| Unit::new(number, UnitRange::Standard).expect("1 to 247");
+        vec![
+            Meter::em24(unit(Self::EM24_UNIT), seed.wrapping_add(1)),
+            Meter::pm290(unit(Self::PM290_UNIT), seed.wrapping_add(2)),
+            Meter::em21(unit(Self::EM21_UNIT), seed.wrapping_add(3)),
+            Meter::pqm(unit(Self::PQM_UNIT), seed),
+        ]
     }
 
     /// A line with these meters on it. Two of the same unit both answer, one after the other.

@@ -1,4 +1,4 @@
-//! Three phases of a factory: the physical model.
+//! Three phases of an installation: the physical model.
 //!
 //! Voltages, currents and power factors of the phases and the frequency are slow [`Wave`]s; all
 //! else follows from them. Everything is in volts, amperes, watts, vars, volt-amperes and hertz;
@@ -15,7 +15,7 @@ const THIRD: f64 = std::f64::consts::TAU / 3.0;
 /// Something that can be measured at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
-    /// Phase A to neutral, V: 347 within 1 %.
+    /// Phase A to neutral, V: that of the installation within 1 %.
     VoltageAn,
     /// Phase B to neutral, V.
     VoltageBn,
@@ -23,7 +23,7 @@ pub enum Quantity {
     VoltageCn,
     /// Mean of the phase voltages, V.
     VoltageLnAverage,
-    /// Phase A to B, V: about 600.
+    /// Phase A to B, V.
     VoltageAb,
     /// Phase B to C, V.
     VoltageBc,
@@ -33,7 +33,7 @@ pub enum Quantity {
     VoltageLlAverage,
     /// Greatest distance of a phase voltage from their mean, as a fraction of it.
     VoltageUnbalance,
-    /// Phase A, A: 300 to 450.
+    /// Phase A, A: its share of that of the installation, and up to a fifth of the swing more or less.
     CurrentA,
     /// Phase B, A.
     CurrentB,
@@ -77,7 +77,7 @@ pub enum Quantity {
     PowerFactorC,
     /// All phases.
     PowerFactorTotal,
-    /// Hz: 60 within 0.03.
+    /// Hz: that of the installation within 0.03.
     Frequency,
 }
 
@@ -108,9 +108,42 @@ impl Values {
     }
 }
 
+/// What a load hangs on, how much it draws, and over which times its demand is a mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Installation {
+    /// Phase to neutral, V.
+    pub voltage: f64,
+    /// Mean current of the phases, A.
+    pub current: f64,
+    /// What part of it each phase draws; together 3.
+    pub shares: [f64; 3],
+    /// How far the currents go from there: 1 for up to a fifth, 4 for up to four fifths; below 5.
+    pub swing: f64,
+    /// Hz.
+    pub frequency: f64,
+    /// Seconds that the demand of power is a mean of; below a day.
+    pub power_window: u32,
+    /// Seconds that the demand of current is a mean of; below a day.
+    pub current_window: u32,
+}
+
+impl Installation {
+    /// A factory on 347/600 V and 60 Hz that draws 300 to 450 A.
+    pub const FACTORY: Self = Self {
+        voltage: 347.0,
+        current: 375.0,
+        shares: [1.0; 3],
+        swing: 1.0,
+        frequency: 60.0,
+        power_window: 900,
+        current_window: 900,
+    };
+}
+
 /// The load and what has become of it: a function of a seed and of time.
 #[derive(Debug)]
 pub struct Load {
+    installation: Installation,
     frequency: Wave,
     /// What all three voltages have in common: the day's course of the network.
     network: Wave,
@@ -124,20 +157,38 @@ pub struct Load {
 }
 
 impl Load {
-    /// The load that belongs to `seed`.
-    pub fn new(seed: u64) -> Self {
+    /// The load of an installation that belongs to `seed`.
+    pub fn new(installation: Installation, seed: u64) -> Self {
         let random = &mut Random::new(seed);
-        // Amplitudes add up to less than the ranges in `Quantity`. Cycles a week: 7 is a day, 168
-        // an hour; the fastest, 20 minutes, is still slow beside the steps of `history`.
+        let factory = Installation::FACTORY;
+        let volts = installation.voltage / factory.voltage;
+        let amperes = installation.current / factory.current * installation.swing;
+        // Amplitudes, here those of the factory, add up to less than the ranges in `Quantity`. Cycles
+        // a week: 7 is a day, 168 an hour; the fastest, 20 minutes, is still slow beside the steps of
+        // `history`.
         Self {
-            frequency: Wave::new(60.0, &[(0.018, 61), (0.010, 307)], random),
-            network: Wave::new(347.0, &[(1.5, 7)], random),
-            work: Wave::new(375.0, &[(30.0, 7), (12.0, 15), (8.0, 151)], random),
-            voltages: [(); 3].map(|()| Wave::new(0.0, &[(1.0, 211), (0.6, 503)], random)),
-            currents: [(); 3].map(|()| Wave::new(0.0, &[(15.0, 97), (7.0, 331)], random)),
+            installation,
+            frequency: Wave::new(installation.frequency, &[(0.018, 61), (0.010, 307)], random),
+            network: Wave::scaled(installation.voltage, volts, &[(1.5, 7)], random),
+            work: Wave::scaled(
+                installation.current,
+                amperes,
+                &[(30.0, 7), (12.0, 15), (8.0, 151)],
+                random,
+            ),
+            voltages: [(); 3].map(|()| Wave::scaled(0.0, volts, &[(1.0, 211), (0.6, 503)], random)),
+            currents: installation.shares.map(|share| {
+                let apart = (share - 1.0) * installation.current;
+                Wave::scaled(apart, amperes, &[(15.0, 97), (7.0, 331)], random)
+            }),
             power_factors: [(); 3].map(|()| Wave::new(0.94, &[(0.020, 61), (0.012, 271)], random)),
             history: OnceLock::new(),
         }
+    }
+
+    /// What it is the load of.
+    pub const fn installation(&self) -> &Installation {
+        &self.installation
     }
 
     /// Sums, demand and extremes.

@@ -1,24 +1,34 @@
 //! The simulated line `sim:`: meters inside the program, on the server side of the codec.
 //!
 //! A [`SimulatedLine`] is a [`crate::transport::Transport`] like a serial port; a frame sent into
-//! it is answered by the [`Meter`]s on it. What a meter shows comes from its [`Model`]: the
-//! [`Pqm`], which measures a [`Load`].
+//! it is answered by the [`Meter`]s on it. What a meter shows comes from its [`Model`]: a
+//! [`Pqm`], a [`Pm290`] or an [`Em2x`], each of which measures a [`Load`].
 //!
 //! * [`wave`] and [`load`]: three phases as a pure function of time and a seed. Nothing is stored
 //!   between runs, yet counters only ever rise, and every quantity agrees with the others.
 //! * [`history`]: what has added up since 2020, the demand, the lowest and the highest.
-//! * [`pqm`]: which of this stands behind which point, in whole steps of the registers.
+//! * [`pqm`], [`pm290`] and [`em2x`]: which of this stands behind which point, in whole steps of the
+//!   registers.
+//! * [`model`]: what a kind of meter holds, and how it differs from the others.
 //! * [`meter`]: requests in, answers, exceptions or silence out.
 //! * [`line`](mod@line): the transport.
 
+pub mod em2x;
 pub mod history;
 pub mod line;
 pub mod load;
 pub mod meter;
+pub mod model;
+pub mod pm290;
+mod powers;
 pub mod pqm;
 pub mod wave;
+mod words;
 
+pub use em2x::Em2x;
 pub use line::SimulatedLine;
-pub use load::Load;
-pub use meter::{Content, Measured, Meter, Model};
+pub use load::{Installation, Load};
+pub use meter::Meter;
+pub use model::{Content, Measured, Model};
+pub use pm290::Pm290;
 pub use pqm::Pqm;

@@ -3,7 +3,6 @@
 //! Names are those of the built-in meter `pqm`. Register facts follow the PQM manual, edition
 //! 3.6x, chapter 7: areas of the memory map pages 197 to 251, formats F22 to F25 page 257.
 
-mod powers;
 mod records;
 mod setpoints;
 mod signals;
@@ -16,18 +15,19 @@ use std::ops::RangeInclusive;
 
 use jiff::{Timestamp, civil};
 
-use self::powers::Powers;
 use self::signals::Signals;
-use self::table::{DEMANDS, QUANTITIES, Statistic};
-use self::words::{counter, date, date_of, rounded, text, time_of};
+use self::table::{DEMANDS, HUNDREDTH, QUANTITIES, Statistic, TEN_WATTS};
+use self::words::{date, date_of, time_of};
 use super::history::{Metered, Sums};
-use super::load::{Load, Values};
-use super::meter::{Content, Measured, Model};
+use super::load::{Installation, Load, Values};
+use super::model::{Content, Measured, Model};
+use super::powers::Powers;
 use super::wave::{Moment, Random};
+use super::words::{counter, rounded, text};
 
 /// What functions 03 and 04 can read: product information, user map data, user map index, actual
 /// values, setpoints. The command area behind the first is write only.
-const READABLE: [RangeInclusive<u16>; 5] = [
+const AREAS: [RangeInclusive<u16>; 5] = [
     0x0000..=0x007F,
     0x0100..=0x017F,
     0x0180..=0x01FF,
@@ -59,7 +59,7 @@ impl Pqm {
         let mut random = Random::new(!seed);
         let number = random.next() % 10_000_000;
         Self {
-            load: Load::new(seed),
+            load: Load::new(Installation::FACTORY, seed),
             signals: Signals::new(&mut random),
             serial_number: format!("C{number:07}"),
         }
@@ -73,7 +73,7 @@ impl Pqm {
             now,
             moment,
             values,
-            powers: Powers::of(&values),
+            powers: Powers::of(&values, TEN_WATTS, HUNDREDTH),
             energy: OnceCell::new(),
             demand: OnceCell::new(),
         }
@@ -81,12 +81,13 @@ impl Pqm {
 }
 
 impl Model for Pqm {
-    fn readable(&self) -> &[RangeInclusive<u16>] {
-        &READABLE
+    fn areas(&self) -> &[RangeInclusive<u16>] {
+        &AREAS
     }
 
-    fn status(&self, _now: Timestamp) -> u8 {
-        0
+    /// Zeros alone (manual page 191).
+    fn echoes(&self, word: u16) -> bool {
+        word == 0
     }
 
     fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_> {
@@ -131,6 +132,7 @@ impl Reading<'_> {
             "mod_file_1" | "mod_file_2" | "mod_file_3" | "mod_file_4" | "mod_file_5" => {
                 Content::Number(0)
             }
+            // Eight characters (F10).
             "serial_number" => text(&self.pqm.serial_number),
             "manufacture_date" => date(civil::date(2006, 3, 14)),
             "calibration_date" => date(civil::date(2006, 3, 21)),
@@ -161,7 +163,8 @@ impl Reading<'_> {
     }
 
     fn energy(&self, point: &str) -> Option<Content> {
-        let of = |metered| counter(self.sums().0.get(metered) / KILOWATT_HOUR);
+        let whole = |value| Content::Number(counter(value));
+        let of = |metered| whole(self.sums().0.get(metered) / KILOWATT_HOUR);
         let real = || self.sums().0.get(Metered::RealPower) / KILOWATT_HOUR;
         let day = || real() - self.sums().1.get(Metered::RealPower) / KILOWATT_HOUR;
         Some(match point {
@@ -170,9 +173,9 @@ impl Reading<'_> {
             "energy_apparent" => of(Metered::ApparentPower),
             // The load takes real power and lags, always.
             "energy_real_neg" | "energy_reactive_neg" => Content::Number(0),
-            "energy_real_24h" => counter(day()),
-            "energy_cost_total" => counter(real() * CENTS_PER_KILOWATT_HOUR),
-            "energy_cost_per_day" => counter(day() * CENTS_PER_KILOWATT_HOUR),
+            "energy_real_24h" => whole(day()),
+            "energy_cost_total" => whole(real() * CENTS_PER_KILOWATT_HOUR),
+            "energy_cost_per_day" => whole(day() * CENTS_PER_KILOWATT_HOUR),
             _ => return None,
         })
     }

@@ -47,6 +47,24 @@ impl Moment {
         Timestamp::from_second(EPOCH_SECONDS + i64::from(second)).unwrap_or_default()
     }
 
+    /// This many whole seconds into the first week of 2020; up to a week.
+    pub const fn in_week(second: u32) -> Self {
+        Self {
+            // Its end is the beginning of the next one, which was the same.
+            week: if second < PERIOD_SECONDS { 0 } else { 1 },
+            second: second % PERIOD_SECONDS,
+            fraction: 0.0,
+        }
+    }
+
+    /// Whole seconds since 2020; 0 before.
+    pub fn since_2020(self) -> u64 {
+        match u64::try_from(self.week) {
+            Ok(weeks) => weeks * u64::from(PERIOD_SECONDS) + u64::from(self.second),
+            Err(_) => 0,
+        }
+    }
+
     /// The position in the week, in seconds.
     pub fn seconds(self) -> f64 {
         f64::from(self.second) + self.fraction
@@ -88,10 +106,15 @@ impl Wave {
     /// A signal around `mean`; each sine is an amplitude and how often it repeats in a week, a
     /// whole number. Their phases come from `random`.
     pub fn new(mean: f64, sines: &[(f64, u16)], random: &mut Random) -> Self {
+        Self::scaled(mean, 1.0, sines, random)
+    }
+
+    /// As [`Self::new`], with amplitudes in parts of `scale`.
+    pub fn scaled(mean: f64, scale: f64, sines: &[(f64, u16)], random: &mut Random) -> Self {
         let sines = sines
             .iter()
             .map(|(amplitude, cycles)| Sine {
-                amplitude: *amplitude,
+                amplitude: amplitude * scale,
                 speed: TAU * f64::from(*cycles) / f64::from(PERIOD_SECONDS),
                 phase: TAU * random.fraction(),
             })

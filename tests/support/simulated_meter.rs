@@ -1,14 +1,14 @@
-//! `simulated_meter TTY`: the simulated PQM, unit 17, on a terminal.
+//! `simulated_meter TTY`: the meters of the simulated line on a terminal: an EM24-DIN, unit 1, a
+//! PM290, unit 2, an EM21, unit 3, and a PQM, unit 17.
 //!
-//! It answers until it is killed or the line hangs up, and then ends with exit code 0. With a pair
-//! of pseudo terminals any Modbus client can be tried on it.
+//! They answer until it is killed or the line hangs up, and then it ends with exit code 0. With a
+//! pair of pseudo terminals any Modbus client can be tried on them.
 
 use std::process::ExitCode;
 use std::time::Duration;
 
 use meterpoll::codec::length::{Direction, of_frame};
-use meterpoll::codec::{Unit, UnitRange};
-use meterpoll::sim::Meter;
+use meterpoll::sim::{Meter, SimulatedLine};
 use meterpoll::transport::serial::Serial;
 use meterpoll::transport::{Clock, LineSettings, SystemClock, Transport, TransportError};
 
@@ -30,16 +30,19 @@ fn main() -> ExitCode {
             return ExitCode::from(3);
         }
     };
-    let meter = Meter::pqm(Unit::new(17, UnitRange::Standard).unwrap(), 0);
-    serve(&mut line, &meter, &SystemClock::new());
+    serve(&mut line, &SimulatedLine::meters(0), &SystemClock::new());
     ExitCode::SUCCESS
 }
 
 /// Answers what comes over `line` until it is lost, and returns how it was lost.
-pub(crate) fn serve(line: &mut dyn Transport, meter: &Meter, clock: &dyn Clock) -> TransportError {
+pub(crate) fn serve(
+    line: &mut dyn Transport,
+    meters: &[Meter],
+    clock: &dyn Clock,
+) -> TransportError {
     let mut heard = Vec::new();
     loop {
-        if let Err(lost) = turn(&mut heard, line, meter, clock) {
+        if let Err(lost) = turn(&mut heard, line, meters, clock) {
             return lost;
         }
     }
@@ -49,7 +52,7 @@ pub(crate) fn serve(line: &mut dyn Transport, meter: &Meter, clock: &dyn Clock) 
 fn turn(
     heard: &mut Vec<u8>,
     line: &mut dyn Transport,
-    meter: &Meter,
+    meters: &[Meter],
     clock: &dyn Clock,
 ) -> Result<(), TransportError> {
     let mut chunk = [0; 256];
@@ -62,8 +65,10 @@ fn turn(
         _ if count == 0 => std::mem::take(heard),
         _ => return Ok(()),
     };
-    match meter.answer(&request, clock.utc_now()) {
+    let now = clock.utc_now();
+    let mut answers = meters.iter().map(|meter| meter.answer(&request, now));
+    answers.try_for_each(|answer| match answer {
         Some(answer) => line.send(answer.as_bytes()),
         None => Ok(()),
-    }
+    })
 }

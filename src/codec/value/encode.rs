@@ -80,8 +80,8 @@ fn text_words(characters: u8, order: ByteOrder, text: &str) -> Option<Vec<u16>> 
     Some(words.collect())
 }
 
-/// Writes an integer into registers; the inverse of [`super::decode`] for integers, hex and bits, and
-/// 1 to 26 for a letter. `None` when the type is not an integer or does not hold the number.
+/// Writes an integer into registers; the inverse of [`decode`](super::decode) for integers, hex and
+/// bits, and 1 to 26 for a letter. `None` when the type is not an integer or does not hold the number.
 pub fn encode_integer(kind: RegisterType, order: ByteOrder, number: i128) -> Option<Vec<u16>> {
     let (lowest, highest) = kind.bounds()?;
     if !(lowest..=highest).contains(&number) {

@@ -5,7 +5,7 @@ use jiff::Timestamp;
 
 use super::DAY;
 use super::words::{date_of, time_of};
-use crate::sim::meter::Content;
+use crate::sim::model::Content;
 use crate::sim::wave::{Moment, PERIOD_SECONDS};
 
 /// What data log 1 records, by the end of the points' names, and its bytes.

@@ -1,7 +1,7 @@
 //! Setpoints: those that fit the load, and the factory settings of the others.
 
 use super::words::padded;
-use crate::sim::meter::Content;
+use crate::sim::model::Content;
 
 /// Noon, as hour and minute (F22) and milliseconds in the minute (F23).
 const NOON: [u16; 2] = [0x0C00, 0];

@@ -3,10 +3,10 @@
 use std::f64::consts::SQRT_2;
 
 use super::table::Statistic;
-use super::words::rounded;
 use crate::sim::history::extremes;
-use crate::sim::meter::Content;
+use crate::sim::model::Content;
 use crate::sim::wave::{Random, Wave};
+use crate::sim::words::rounded;
 
 /// What has a distortion, by the end of its point's name.
 const DISTORTED: [&str; 10] = [

@@ -1,7 +1,7 @@
 //! What stays as it is while nothing is wrong: status words, diagnosis, the user map.
 
 use super::words::padded;
-use crate::sim::meter::Content;
+use crate::sim::model::Content;
 
 /// What the point of this name holds.
 pub(super) fn content(point: &str) -> Option<Content> {

@@ -1,9 +1,10 @@
 //! Which quantity a point shows, and in which steps.
 
-use super::words::{date_of, rounded, time_of};
+use super::words::{date_of, time_of};
 use crate::sim::history::{Extremes, Metered};
 use crate::sim::load::Quantity;
-use crate::sim::meter::Content;
+use crate::sim::model::Content;
+use crate::sim::words::rounded;
 
 /// Steps of the registers, in the units of [`Quantity`].
 const WHOLE: f64 = 1.0;

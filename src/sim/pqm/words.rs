@@ -1,34 +1,11 @@
-//! Values as the PQM writes them into registers.
+//! Dates and times as the PQM writes them into registers.
 
 use jiff::Timestamp;
 use jiff::civil::{Date, DateTime};
 use jiff::tz::TimeZone;
 
-use crate::sim::meter::Content;
-
-/// The nearest whole step.
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "the nearest integer is the point; every value here is far inside i128"
-)]
-pub(super) fn rounded(value: f64) -> i128 {
-    value.round() as i128
-}
-
-/// A counter shows whole units that are full, and starts at 0 in 2020.
-pub(super) fn counter(value: f64) -> Content {
-    Content::Number(rounded(value.floor().max(0.0)))
-}
-
-/// Two characters a register, the first in the high byte (F10).
-pub(super) fn text(text: &str) -> Content {
-    let words = text.as_bytes().chunks(2).map(|pair| match pair {
-        [first, second] => u16::from_be_bytes([*first, *second]),
-        [first] => u16::from_be_bytes([*first, b' ']),
-        _ => 0,
-    });
-    Content::Words(words.collect())
-}
+use crate::sim::model::Content;
+use crate::sim::words::text;
 
 /// Text in as many characters as the point has, the rest of them spaces.
 pub(super) fn padded(content: &str, length: usize) -> Content {

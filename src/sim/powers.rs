@@ -1,12 +1,10 @@
 //! Powers that add up in the registers.
 
-use super::table::{HUNDREDTH, TEN_WATTS};
+use super::load::{Quantity, Values};
 use super::words::rounded;
-use crate::sim::load::{Quantity, Values};
 
-/// Power registers of the phases and of all three, in steps of 10 W, 10 var and 10 VA and
-/// hundredths of a power factor. They are worked out from each other after rounding, so that they
-/// add up to the last digit.
+/// Power registers of the phases and of all three. They are worked out from each other after
+/// rounding, so that they add up to the last digit.
 pub(super) struct Powers {
     real: [i128; 4],
     reactive: [i128; 4],
@@ -15,11 +13,12 @@ pub(super) struct Powers {
 }
 
 impl Powers {
-    pub(super) fn of(values: &Values) -> Self {
+    /// In steps of so many W, var and VA, and of that much of a power factor.
+    pub(super) fn of(values: &Values, power_step: f64, factor_step: f64) -> Self {
         use Quantity as Q;
 
         let with_total = |phases: [Quantity; 3]| {
-            let [a, b, c] = phases.map(|quantity| rounded(values.get(quantity) / TEN_WATTS));
+            let [a, b, c] = phases.map(|quantity| rounded(values.get(quantity) / power_step));
             [a, b, c, a + b + c]
         };
         let real = with_total([Q::RealPowerA, Q::RealPowerB, Q::RealPowerC]);
@@ -27,7 +26,7 @@ impl Powers {
         let apparent =
             [0, 1, 2, 3].map(|row| rounded(float(real[row]).hypot(float(reactive[row]))));
         let factor =
-            [0, 1, 2, 3].map(|row| rounded(float(real[row]) / float(apparent[row]) / HUNDREDTH));
+            [0, 1, 2, 3].map(|row| rounded(float(real[row]) / float(apparent[row]) / factor_step));
         Self {
             real,
             reactive,

@@ -1,0 +1,91 @@
+//! Reading units of one meter: what is asked, how, and what is said when it goes wrong.
+
+use super::CommandError;
+use super::open_line::LinePlan;
+use super::report::Report;
+use super::trouble::Place;
+use crate::cli::Units;
+use crate::client::{Client, Patience};
+use crate::codec::{ReadFunction, Unit};
+use crate::profile::plan::{Cost, Rules};
+use crate::profile::{Limits, Plan, Point, Profile, Setup};
+use crate::readings::{Inquiry, Memory, Taken, take};
+
+/// The units that were typed, if a meter of these limits can have them.
+pub(super) fn units(typed: &Units, limits: &Limits) -> Result<Vec<Unit>, CommandError> {
+    let numbers = typed.0.iter();
+    numbers
+        .map(|number| Unit::new(*number, limits.units).map_err(CommandError::Unit))
+        .collect()
+}
+
+/// What every unit is asked.
+pub(super) struct Asking<'a> {
+    /// The meter's name; empty for an unknown one.
+    pub(super) meter: &'a str,
+    /// What is read.
+    pub(super) points: &'a [Point],
+    /// What their scales depend on.
+    pub(super) setup: Setup,
+    function: ReadFunction,
+    rules: Rules,
+    /// What reads cost on this line.
+    pub(super) cost: Cost,
+    /// How patient to be.
+    pub(super) patience: Patience,
+    /// The line, `/dev/ttyUSB0 at 9600 8N1`.
+    pub(super) line: String,
+}
+
+impl<'a> Asking<'a> {
+    /// Asks for `points`, with `function` those that have none of their own.
+    pub(super) fn new(
+        line: &LinePlan<'_>,
+        profile: Option<&'a Profile>,
+        points: &'a [Point],
+        function: ReadFunction,
+    ) -> Self {
+        let unknown = Limits::default();
+        let limits = profile.map_or(&unknown, |profile| &profile.limits);
+        let patience = line.patience(limits);
+        Self {
+            meter: profile.map_or("", |profile| &profile.name),
+            points,
+            setup: Setup::of(points, profile),
+            function,
+            rules: profile.map_or_else(|| Rules::new(limits), Rules::of),
+            cost: Cost::new(line.settings, patience.pause, limits.typical_answer),
+            patience,
+            line: line.name(),
+        }
+    }
+
+    /// The cheapest plan for points of this meter.
+    pub(super) fn plan(&self, points: &[Point]) -> Plan {
+        Plan::new(points, self.function, &self.rules, self.cost)
+    }
+
+    /// Reads one unit and tells what went wrong.
+    pub(super) fn ask(&self, unit: Unit, client: &mut Client, report: &mut Report) -> Taken<'a> {
+        let inquiry = Inquiry {
+            unit,
+            meter: self.meter,
+            points: self.points,
+            setup: &self.setup,
+            function: self.function,
+            cost: self.cost,
+            patience: self.patience,
+        };
+        let taken = take(client, &inquiry, &mut Memory::new(self.rules.clone()));
+        let place = Place {
+            line: &self.line,
+            unit,
+            points: &taken.points,
+            attempts: self.patience.retries + 1,
+        };
+        for trouble in &taken.troubles {
+            report.trouble(&place, trouble);
+        }
+        taken
+    }
+}

@@ -1,0 +1,50 @@
+//! What a simulated meter of one kind holds and measures, and how it differs from the others. Where
+//! its points lie and what may be asked of it is the matter of its profile.
+
+use std::ops::RangeInclusive;
+
+use jiff::Timestamp;
+
+use crate::codec::RegisterRange;
+
+/// What a meter of one kind holds and measures.
+pub trait Model: Send + Sync {
+    /// Areas in which a read may cover registers that no point names; those read as 0. Outside of
+    /// them there are only the registers of points.
+    fn areas(&self) -> &[RangeInclusive<u16>] {
+        &[]
+    }
+
+    /// The bits that function 07 answers, on a meter that has it.
+    fn status(&self, _now: Timestamp) -> u8 {
+        0
+    }
+
+    /// Whether function 08 sends this word back.
+    fn echoes(&self, _word: u16) -> bool {
+        true
+    }
+
+    /// Whether it is too busy for a request that touches these registers.
+    fn is_busy(&self, _range: RegisterRange, _now: Timestamp) -> bool {
+        false
+    }
+
+    /// Measures everything at one instant.
+    fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_>;
+}
+
+/// All that a meter knows at one instant.
+pub trait Measured {
+    /// What the point of this name holds; `None` for a point the model knows nothing of.
+    fn content(&self, point: &str) -> Option<Content>;
+}
+
+/// What a point holds, before it is laid into registers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Content {
+    /// A raw integer, before scale: the point's type and byte order make registers of it.
+    Number(i128),
+    /// Registers as they are: text, dates, times.
+    Words(Vec<u16>),
+}
