@@ -7,41 +7,8 @@ mod support {
     pub(crate) mod pty;
 }
 
-use std::collections::BTreeMap;
-
-use meterpoll::codec::{ExceptionCode, ReadValues, Reply, Request, Response, Unit, UnitRange, rtu};
 use support::program::Program;
 use support::pty::PtyMeter;
-
-/// A PM290 at each of these units that holds these registers and no others.
-fn pm290(units: &'static [u16], registers: &[(u16, u16)]) -> PtyMeter {
-    let registers: BTreeMap<u16, u16> = registers.iter().copied().collect();
-    PtyMeter::new(Box::new(move |frame| {
-        let (number, request) = match rtu::decode_request(frame) {
-            Ok((rtu::Destination::Unit(unit), request)) if units.contains(&unit.get().into()) => {
-                (unit.get().into(), request)
-            }
-            _ => return Vec::new(),
-        };
-        let Request::Read { function, range } = request else {
-            panic!("no read: {request:?}");
-        };
-        let first = range.start().get();
-        let held = (first..first + range.count()).map(|address| registers.get(&address).copied());
-        let reply = match held.collect::<Option<Vec<u16>>>() {
-            Some(values) => Reply::Normal(Response::Registers {
-                function,
-                values: ReadValues::new(values).expect("as many as were asked for"),
-            }),
-            None => Reply::Exception {
-                function: function.into(),
-                code: ExceptionCode::ILLEGAL_DATA_ADDRESS,
-            },
-        };
-        let unit = Unit::new(number, UnitRange::Standard).expect("a unit");
-        rtu::encode_reply(unit, &reply).as_bytes().to_vec()
-    }))
-}
 
 /// Four wires to neutral, ratio 1.0, 200 A: Vmax 660 V, Imax 240 A, Pmax 475200 W.
 const SETUP: [(u16, u16); 3] = [(0x0900, 1), (0x0901, 10), (0x0902, 200)];
@@ -71,7 +38,7 @@ fn asked(meter: &PtyMeter) -> Vec<(u8, u16, u16)> {
 #[test]
 fn power_comes_in_watts_by_the_setup_that_is_read_with_it() {
     let registers = with_setup(&[(0x0106, 6000), (0x011F, 0x10E1), (0x0120, 3)]);
-    let meter = pm290(&[1], &registers);
+    let meter = PtyMeter::holding(&[1], &registers);
     read(&meter, "-a 1 active_power_a energy_active_import")
         .stdout(
             "time,meter,unit_id,status,active_power_a,energy_active_import\n\
@@ -86,7 +53,7 @@ fn power_comes_in_watts_by_the_setup_that_is_read_with_it() {
 
 #[test]
 fn what_needs_no_setup_is_read_without_it() {
-    let meter = pm290(&[1], &[(0x0117, 2500)]);
+    let meter = PtyMeter::holding(&[1], &[(0x0117, 2500)]);
     read(&meter, "-a 1 frequency")
         .stdout("time,meter,unit_id,status,frequency\n<time>,pm290,1,ok,50.0005\n")
         .run();
@@ -95,7 +62,7 @@ fn what_needs_no_setup_is_read_without_it() {
 
 #[test]
 fn setup_that_is_asked_for_is_read_once_and_shown() {
-    let meter = pm290(&[1], &with_setup(&[(0x0103, 5000)]));
+    let meter = PtyMeter::holding(&[1], &with_setup(&[(0x0103, 5000)]));
     read(&meter, "-a 1 ct_primary_current current_a")
         .stdout(
             "time,meter,unit_id,status,ct_primary_current,current_a\n\
@@ -107,7 +74,7 @@ fn setup_that_is_asked_for_is_read_once_and_shown() {
 
 #[test]
 fn each_unit_is_scaled_by_its_own_setup() {
-    let meter = pm290(&[1, 2], &with_setup(&[(0x0103, 9999)]));
+    let meter = PtyMeter::holding(&[1, 2], &with_setup(&[(0x0103, 9999)]));
     read(&meter, "-a 1,2 current_a")
         .stdout(
             "time,meter,unit_id,status,current_a\n\
@@ -120,7 +87,7 @@ fn each_unit_is_scaled_by_its_own_setup() {
 
 #[test]
 fn setup_that_the_meter_refuses_leaves_what_depends_on_it_without_a_figure() {
-    let meter = pm290(&[1], &[(0x0100, 3333), (0x0117, 2500)]);
+    let meter = PtyMeter::holding(&[1], &[(0x0100, 3333), (0x0117, 2500)]);
     read(&meter, "-a 1 voltage_a frequency")
         .code(1)
         .stdout(
@@ -139,7 +106,7 @@ fn setup_that_the_meter_refuses_leaves_what_depends_on_it_without_a_figure() {
 
 #[test]
 fn setup_that_cannot_be_is_told_and_scales_nothing() {
-    let meter = pm290(&[1], &[(0x0100, 3333), (0x0117, 2500), (0x0901, 0)]);
+    let meter = PtyMeter::holding(&[1], &[(0x0100, 3333), (0x0117, 2500), (0x0901, 0)]);
     read(&meter, "-a 1 voltage_a frequency")
         .code(1)
         .stdout(
@@ -157,7 +124,7 @@ fn setup_that_cannot_be_is_told_and_scales_nothing() {
 
 #[test]
 fn a_raw_number_past_the_full_scale_is_told() {
-    let meter = pm290(&[1], &with_setup(&[(0x0103, 10000)]));
+    let meter = PtyMeter::holding(&[1], &with_setup(&[(0x0103, 10000)]));
     read(&meter, "-a 1 current_a")
         .code(4)
         .stdout("time,meter,unit_id,status,current_a\n<time>,pm290,1,mismatch,\n")
@@ -179,7 +146,7 @@ fn the_power_of_a_phase_is_absent_with_three_wires() {
         (0x0901, 10),
         (0x0902, 200),
     ];
-    let meter = pm290(&[1], &registers);
+    let meter = PtyMeter::holding(&[1], &registers);
     // Pmax is 316800 W with three wires.
     read(&meter, "-a 1 active_power_a active_power_total")
         .code(1)

@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses its own share")]
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::fs::File;
 use std::io::{Read, Write};
@@ -79,6 +80,17 @@ impl PtyMeter {
         }))
     }
 
+    /// A meter at each of these units that holds these registers; it refuses to read any other.
+    pub(crate) fn holding(units: &'static [u16], registers: &[(u16, u16)]) -> Self {
+        let held: BTreeMap<u16, u16> = registers.iter().copied().collect();
+        Self::new(Box::new(move |request| {
+            let answers = units.iter().filter_map(|unit| {
+                answer_with(*unit, request, |address| held.get(&address).copied())
+            });
+            answers.flatten().collect()
+        }))
+    }
+
     /// The path a client opens.
     pub(crate) fn path(&self) -> &str {
         &self.path
@@ -121,11 +133,12 @@ pub(crate) fn register(address: u16) -> u16 {
 
 /// How a healthy meter at `unit` answers; nothing when it is not meant.
 pub(crate) fn answer(unit: u16, request: &[u8]) -> Option<Vec<u8>> {
-    let held = |address| (address < 0x400).then(|| register(address));
-    answer_with(unit, request, held)
+    answer_with(unit, request, |address| {
+        (address < 0x400).then(|| register(address))
+    })
 }
 
-/// How a meter at `unit` answers that has these registers; nothing when it is not meant.
+/// How a meter at `unit` answers that holds these registers; nothing when it is not meant.
 pub(crate) fn answer_with(
     unit: u16,
     request: &[u8],
@@ -139,8 +152,10 @@ pub(crate) fn answer_with(
     let values = match request {
         Request::Read { range, .. } => {
             let first = range.start().get();
-            let last = first + (range.count() - 1);
-            (first..=last).map(held).collect::<Option<Vec<u16>>>()
+            (first..=u16::MAX)
+                .take(range.count().into())
+                .map(held)
+                .collect()
         }
         _ => None,
     };
