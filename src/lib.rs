@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! main → commands → cli        what can be typed
-//!                 → output     readings to table, CSV, JSON
+//!                 → output     readings, and what a meter is, to table, CSV, JSON
 //!                 → readings   a read plan carried out: a value or a fault for each point
 //!                 → sim        a simulated meter and its line
 //!                 → client     one request and its one answer; what is believed

@@ -148,10 +148,13 @@ fn a_time_without_unit_is_refused() {
 
 #[test]
 fn without_a_port_the_option_is_named() {
-    let output = Program::new("read-registers -a 1 0").output();
-    assert_eq!(output.status.code(), Some(2));
-    let stderr = String::from_utf8(output.stderr).expect("text");
-    assert!(stderr.contains("--port <PORT>"), "{stderr}");
+    Program::new("read-registers -a 1 0")
+        .code(2)
+        .stderr(
+            "error: no port is named\n\
+             hint: give a serial port with --port, or sim: for the simulated line\n",
+        )
+        .run();
 }
 
 #[test]

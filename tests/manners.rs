@@ -174,11 +174,11 @@ fn meters_lists_what_can_be_named_and_ends_with_2_when_one_does_not_load() {
         .variable("XDG_CONFIG_HOME", &home)
         .code(2)
         .stdout(format!(
-            "NAME   METER                                POINTS  LINE       FROM\n\
-             em21   Carlo Gavazzi EM21 energy meter          42  19200 8N1  built in\n\
-             em24   Carlo Gavazzi EM24-DIN energy meter      96  9600 8N1   built in\n\
-             pm290  Satec PM290 powermeter                   66  9600 8N1   built in\n\
-             pqm    Title                                     1  9600 8N1   {folder}/pqm.toml\n"
+            "NAME   METER                                POINTS  VERIFIED  LINE       FROM\n\
+             em21   Carlo Gavazzi EM21 energy meter          42        42  19200 8N1  built in\n\
+             em24   Carlo Gavazzi EM24-DIN energy meter      96        70  9600 8N1   built in\n\
+             pm290  Satec PM290 powermeter                   66        37  9600 8N1   built in\n\
+             pqm    Title                                     1         1  9600 8N1   {folder}/pqm.toml\n"
         ))
         .stderr(format!(
             "error: profile {folder}/other.toml has name = \"another\", and its file says otherwise\n\

@@ -50,7 +50,7 @@ fn columns_that_would_be_empty_are_left_out() {
              0x0100   voltage_a *  u16   0..9999 → 0..vmax  V     20\n\
              0x0101   voltage_b    u16   0..9999 → 0..vmax  V     20\n\
              0x0102   voltage_ab   u16   0..9999 → 0..vmax  V     20\n\
-             0x0110   frequency    u16   by raw number      Hz    21\n\n\
+             0x0110   frequency    u16   by raw             Hz    21\n\n\
              vmax = 660 for raw pt_ratio 10; else vmax_of_ratio\n\
              vmax_of_ratio = 144 × pt_ratio\n\n\
              frequency  1 at raw 40..70; 0.1 at raw 400..700\n\n\

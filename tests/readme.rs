@@ -93,11 +93,12 @@ fn the_profile_shown_loads_and_there_is_nothing_to_say_about_it() {
 #[cfg(unix)]
 #[test]
 fn a_meter_is_read_with_the_profile_shown() {
+    // Two thirds of a full scale of 240 A.
     let meter = PtyMeter::new(Box::new(|request| {
         let held = |address| match address {
-            0x0000 => Some(21),
             0x0010 => Some(2301),
             0x0011 => Some(0),
+            0x0012 => Some(6666),
             0x0013 => Some(5002),
             0x0034 => Some(1),
             0x0035 => Some(2),
@@ -108,12 +109,12 @@ fn a_meter_is_read_with_the_profile_shown() {
     }));
     let port = meter.path();
     Program::new(&format!(
-        "read-registers -p {port} -a 4 --meter mine.toml voltage_a frequency @setup energy_* -f csv"
+        "read-registers -p {port} -a 4 --meter mine.toml -f csv"
     ))
     .folder(with_the_profile("read"))
     .stdout(
-        "time,meter,unit_id,status,voltage_a,frequency,model,ct_primary,energy_import\n\
-             <time>,mine,4,ok,230.1,50.02,21,200,65538\n",
+        "time,meter,unit_id,status,voltage_a,current_a,frequency,energy_import\n\
+             <time>,mine,4,ok,230.1,160.000,50.02,65538\n",
     )
     .run();
 }

@@ -28,7 +28,8 @@ pub struct Shown<'a> {
 /// How much of it people see.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
-    /// The meter with its line, limits, groups and formulas, and a table of the points.
+    /// The meter with its line, limits, groups and formulas, a table of the points that are only
+    /// read and one of the others.
     Whole,
     /// The points: one with all there is to say about it, more in a table.
     Points,
@@ -41,15 +42,20 @@ impl Shown<'_> {
     pub fn text(&self, extent: Extent) -> String {
         let Self { profile, points } = *self;
         let legend = Legend::of(points);
-        let mut parts = vec![listing::table(points, &legend)];
+        let mut parts = Vec::new();
         match (extent, points) {
-            (Extent::Whole, _) => parts.insert(0, head::head(profile)),
+            (Extent::Whole, _) => {
+                parts.push(head::head(profile));
+                parts.extend(listing::tables(points, &legend));
+            }
             (Extent::Points, [point]) => return card::card(profile, point),
             (Extent::Points, _) => {
-                parts.insert(0, format!("{}: {}\n", profile.name, escape(&profile.title)));
+                let title = escape(&profile.title);
+                parts.push(format!("{}: {title}\n", profile.name));
+                parts.push(listing::table(points, &legend));
                 parts.extend(listing::formulas(profile, points));
             }
-            (Extent::Bare, _) => {}
+            (Extent::Bare, _) => parts.push(listing::table(points, &legend)),
         }
         parts.extend(listing::scales(points));
         parts.extend(legend.text());

@@ -3,6 +3,7 @@
 use crate::commands::report::Report;
 use crate::commands::{CommandError, ExitCode, print};
 use crate::output::columns::columns;
+use crate::output::escape;
 use crate::profile::{Profile, builtin, find};
 
 /// Lists the meters that can be named: the user's own, and those inside the program that no own
@@ -25,16 +26,18 @@ pub(super) fn run(report: &mut Report) -> Result<ExitCode, CommandError> {
         }
     }
     lines.sort();
-    let header = ["NAME", "METER", "POINTS", "LINE", "FROM"];
-    print(columns(&header, &[2], lines).as_bytes())?;
+    let header = ["NAME", "METER", "POINTS", "VERIFIED", "LINE", "FROM"];
+    print(columns(&header, &[2, 3], lines).as_bytes())?;
     Ok(end)
 }
 
 fn line(profile: &Profile, from: &str) -> Vec<String> {
+    let verified = profile.points.iter().filter(|point| point.verified);
     vec![
         profile.name.clone(),
-        profile.title.clone(),
+        escape(&profile.title),
         profile.points.len().to_string(),
+        verified.count().to_string(),
         profile.line.to_string(),
         from.to_owned(),
     ]

@@ -13,8 +13,24 @@ use crate::profile::{Point, Profile};
 /// What a column has for a point.
 type Cell<'a> = &'a dyn Fn(&Point) -> String;
 
+/// What is only read in a table of its own, which is narrow enough for most terminals: bounds and
+/// most labels are those of the others.
+pub(super) fn tables(points: &[Point], legend: &Legend<'_>) -> Vec<String> {
+    let is_read = |point: &&Point| point.access == Access::Read;
+    let (read, written): (Vec<&Point>, Vec<&Point>) = points.iter().partition(is_read);
+    [read, written]
+        .iter()
+        .filter(|points| !points.is_empty())
+        .map(|points| table(points.iter().copied(), legend))
+        .collect()
+}
+
 /// A line a point. Columns that would be empty are left out.
-pub(super) fn table(points: &[Point], legend: &Legend<'_>) -> String {
+pub(super) fn table<'a>(
+    points: impl IntoIterator<Item = &'a Point>,
+    legend: &Legend<'_>,
+) -> String {
+    let points: Vec<&Point> = points.into_iter().collect();
     let all: [(&str, Cell<'_>); 9] = [
         ("ADDRESS", &registers),
         ("NAME", &name),
@@ -63,7 +79,7 @@ fn kind(point: &Point) -> String {
 /// Of more than one factor only that there are: they stand below.
 fn scale(point: &Point) -> String {
     match point.scaling {
-        Scaling::TimesByRaw(_) => "by raw number".to_owned(),
+        Scaling::TimesByRaw(_) => "by raw".to_owned(),
         _ => terms::scale(point).unwrap_or_default(),
     }
 }
