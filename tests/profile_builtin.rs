@@ -280,7 +280,7 @@ fn the_pqm_has_the_limits_of_its_manual() {
     assert_eq!(limits.broadcast_functions, [5, 16].map(function));
     assert_eq!(limits.read_registers, 125);
     assert_eq!(limits.write_registers, 60);
-    assert!(!limits.read_holes);
+    assert!(limits.read_holes);
     assert_eq!(limits.table_registers, None);
     assert_eq!(limits.typical_answer, Duration::ZERO);
     assert_eq!(limits.longest_answer, Duration::from_secs(1));

@@ -25,13 +25,11 @@ use super::powers::Powers;
 use super::wave::{Moment, Random};
 use super::words::{counter, rounded, text};
 
-/// What functions 03 and 04 can read: product information, user map data, user map index, actual
-/// values, setpoints. The command area behind the first is write only.
-const AREAS: [RangeInclusive<u16>; 5] = [
+/// What functions 03 and 04 can read: product information; user map and actual values; setpoints. The
+/// command area behind the first is write only.
+const AREAS: [RangeInclusive<u16>; 3] = [
     0x0000..=0x007F,
-    0x0100..=0x017F,
-    0x0180..=0x01FF,
-    0x0200..=0x0E1F,
+    0x0100..=0x0E1F,
     0x1000..=0x131F,
 ];
 
