@@ -73,6 +73,8 @@ fn a_total_may_be_off_by_the_steps_of_its_registers() {
 fn a_load_of_a_few_steps_proves_nothing() {
     let nothing = [("a", 0.0), ("b", 0.0), ("c", 0.0), ("total", 0.0)];
     assert_eq!(test(sum(), 0.01, &nothing), Outcome::TooSmall);
+    // Floats have no steps.
+    assert_eq!(test(sum(), 0.0, &nothing), Outcome::TooSmall);
     let little = [("a", 0.1), ("b", 0.1), ("c", 0.1), ("total", 0.3)];
     assert_eq!(test(sum(), 0.01, &little), Outcome::TooSmall);
 }

@@ -132,10 +132,10 @@ fn bands_are_apart_and_not_empty() {
         ),
         "m.toml:10: a.scale.raw: these raw numbers have a factor already",
     );
-    for raw in ["[5, 1]", "[5]", "[]"] {
+    for raw in ["[5, 1]", "[5]", "[]", "[-1, 5]", "[5, 65536]"] {
         refused(
             &point("u16", &format!("scale = [{{ raw = {raw}, factor = 1 }}]")),
-            &format!("m.toml:10: a.scale.raw: {raw} is not [lowest, highest] raw number"),
+            &format!("m.toml:10: a.scale.raw: {raw} is not [lowest, highest] raw number of u16"),
         );
     }
     refused(
@@ -153,6 +153,10 @@ fn a_span_has_ends_that_are_there_and_a_full_scale() {
     refused(
         &point("u16", "span = { full = 9, low = \"-half\", high = 1 }"),
         "m.toml:10: a.span.low: there is no factor or point 'half'",
+    );
+    refused(
+        &point("u16", "span = { full = 9, low = 5, high = 5 }"),
+        "m.toml:10: a.span.high: 5 is not another than low: between them lies nothing",
     );
     refused(
         &point("f32", "span = { full = 9, low = 0, high = 1 }"),
@@ -219,4 +223,59 @@ fn a_tolerance_is_a_part() {
             &format!("m.toml:4: identities.tolerance: {tolerance} is not above 0 and below 1"),
         );
     }
+}
+
+#[test]
+fn what_is_told_by_codes_has_one_register() {
+    let wide = "[factors]\na = { by = \"wide\", cases = { 1 = 1 } }\n\
+                [[points]]\nname = \"wide\"\naddress = 8\ntype = \"u32\"";
+    refused(
+        &profile(wide),
+        "m.toml:5: factors.a.by: \"wide\" is not a point of one register",
+    );
+    let letter = "[factors]\na = { product = [\"revision\"] }\n\
+                  [[points]]\nname = \"revision\"\naddress = 8\ntype = \"letter\"";
+    refused(
+        &profile(letter),
+        "m.toml:5: factors.a: \"revision\" is not an integer that can be read and whose scale is \
+         a number",
+    );
+}
+
+#[test]
+fn one_minus_is_a_minus_and_two_are_a_slip() {
+    refused(
+        &profile("[factors]\na = { product = [\"--ct\"] }"),
+        "m.toml:5: factors.a: there is no factor or point '-ct'",
+    );
+}
+
+#[test]
+fn many_factors_of_each_other_load_at_once() {
+    use std::fmt::Write as _;
+
+    let mut lines = "[factors]\n".to_owned();
+    for number in 0..2000 {
+        let next = number + 1;
+        let _ = writeln!(
+            lines,
+            "f{number} = {{ product = [\"f{next}\", \"f{next}\"] }}"
+        );
+    }
+    let round = format!("{lines}f2000 = {{ product = [\"f1999\"] }}");
+    refused(
+        &profile(&round),
+        "m.toml:2004: factors.f1999: goes round in a circle: f1999 needs f2000 needs f1999",
+    );
+    let chain = format!("{lines}f2000 = {{ product = [\"ct\"] }}");
+    assert!(load("m.toml", &profile(&chain)).is_ok());
+}
+
+#[test]
+fn names_of_label_tables_are_names() {
+    refused(
+        &profile("[labels]\n\"\\u001b[31m\" = { 1 = \"on\" }"),
+        "m.toml:5: labels.\u{1b}[31m: '\u{1b}[31m' is no name: small letters, digits and '_', a \
+         letter first",
+    );
 }

@@ -99,7 +99,7 @@ fn read(point: &str, registers: &[u16], setup: &[(&str, u16)]) -> Result<String,
         .map(|(name, word)| ((*name).to_owned(), vec![*word]))
         .collect();
     point
-        .interpret(registers, needed.scales(&held))
+        .interpret(registers, &needed.scales(&held))
         .map(|value: Value| value.to_string())
 }
 
@@ -280,4 +280,50 @@ fn factors_and_scales_print_as_formulas() {
         let point = meter().point(point).expect("a point");
         assert_eq!(point.scaling.to_string(), expected, "{}", point.name);
     }
+}
+
+/// A meter whose transformer register says when it is not set, and may hold 0.
+const LOOSE: &str = r#"
+name = "m"
+title = "Meter"
+manual = "Manual"
+factors.step = { product = [0.1, "ct"] }
+points = [
+  { name = "ct", address = 0, type = "u16", no_value = { raw = 65535, means = "absent" } },
+  { name = "ct_wide", address = 1, type = "i32", no_value = { high_word = 0x7FFF, means = "overflow" } },
+  { name = "by_factor", address = 3, type = "u16", scale = "step" },
+  { name = "by_point", address = 4, type = "u16", scale = "ct" },
+  { name = "by_wide", address = 5, type = "u16", scale = "ct_wide" },
+]
+"#;
+
+fn loose(point: &str, setup: &[(&str, &[u16])]) -> Result<String, Missing> {
+    let meter = load("m.toml", LOOSE).unwrap_or_else(|error| panic!("{error}"));
+    let point = meter.point(point).expect("a point");
+    let needed = Setup::of(std::slice::from_ref(point), Some(&meter));
+    let held = setup
+        .iter()
+        .map(|(name, words)| ((*name).to_owned(), words.to_vec()))
+        .collect();
+    let value = point.interpret(&[100], &needed.scales(&held));
+    value.map(|value| value.to_string())
+}
+
+#[test]
+fn setup_that_the_meter_marks_as_not_there_scales_nothing() {
+    assert_eq!(loose("by_point", &[("ct", &[40])]).as_deref(), Ok("4000"));
+    assert_eq!(loose("by_point", &[("ct", &[65535])]), Err(Missing::Absent));
+    assert_eq!(
+        loose("by_factor", &[("ct", &[65535])]),
+        Err(Missing::Absent)
+    );
+    let wide = |high| loose("by_wide", &[("ct_wide", &[high, 5])]);
+    assert_eq!(wide(0).as_deref(), Ok("500"));
+    assert_eq!(wide(0x7FFF), Err(Missing::Overflow));
+}
+
+#[test]
+fn nothing_is_measured_in_steps_of_0() {
+    assert_eq!(loose("by_point", &[("ct", &[0])]), Err(Missing::Mismatch));
+    assert_eq!(loose("by_factor", &[("ct", &[0])]), Err(Missing::Mismatch));
 }

@@ -17,7 +17,7 @@ fn point(keys: &str) -> Point {
 /// What the registers read as, as it is printed.
 #[track_caller]
 fn shown(keys: &str, registers: &[u16]) -> String {
-    match point(keys).interpret(registers, Scales::none()) {
+    match point(keys).interpret(registers, &Scales::default()) {
         Ok(value) => value.to_string(),
         Err(missing) => panic!("{keys}: {missing:?}"),
     }
@@ -25,7 +25,7 @@ fn shown(keys: &str, registers: &[u16]) -> String {
 
 #[track_caller]
 fn missing(keys: &str, registers: &[u16]) -> Missing {
-    match point(keys).interpret(registers, Scales::none()) {
+    match point(keys).interpret(registers, &Scales::default()) {
         Ok(value) => panic!("{keys}: {value}"),
         Err(missing) => missing,
     }
@@ -313,12 +313,12 @@ fn a_float_is_scaled_from_the_digits_it_prints() {
 #[test]
 fn a_float_beyond_what_decimals_hold_is_scaled_all_the_same() {
     let keys = "type = \"f64\"\nscale = 0.5";
-    let value = point(keys).interpret(&words(1e300_f64.to_bits()), Scales::none());
+    let value = point(keys).interpret(&words(1e300_f64.to_bits()), &Scales::default());
     assert_eq!(value, Ok(Value::Double(5e299)));
-    let value = point(keys).interpret(&words(1e-300_f64.to_bits()), Scales::none());
+    let value = point(keys).interpret(&words(1e-300_f64.to_bits()), &Scales::default());
     assert_eq!(value, Ok(Value::Double(5e-301)));
     let keys = "type = \"f64\"\nscale = 1e-15";
-    let value = point(keys).interpret(&words(1e-20_f64.to_bits()), Scales::none());
+    let value = point(keys).interpret(&words(1e-20_f64.to_bits()), &Scales::default());
     assert_eq!(value, Ok(Value::Double(1e-20 * 1e-15)));
 }
 
@@ -347,7 +347,7 @@ fn too_few_or_too_many_registers_are_no_value() {
 #[test]
 fn only_numbers_say_that_they_are() {
     let is_number = |keys, registers: &[u16]| {
-        let value = point(keys).interpret(registers, Scales::none());
+        let value = point(keys).interpret(registers, &Scales::default());
         value.is_ok_and(|value| value.is_number())
     };
     assert!(is_number("type = \"u16\"", &[1]));

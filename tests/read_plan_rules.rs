@@ -206,6 +206,8 @@ fn holes_are_crossed_until_they_are_forbidden() {
         reads(&profile, &rules, "voltage_c power_a"),
         [(0x0C, 2), (0x10, 2)]
     );
+    // What is known is no hole.
+    assert_eq!(reads(&profile, &rules, "voltage_a voltage_c"), [(8, 6)]);
 }
 
 #[test]
@@ -229,16 +231,5 @@ fn registers_of_other_points_are_no_hole() {
     assert_eq!(
         reads(&strict, &rules, "power_a power_b"),
         [(0x10, 2), (0x14, 2)]
-    );
-}
-
-#[test]
-fn a_unit_that_refuses_holes_is_asked_for_nothing_between() {
-    let profile = profile("");
-    let mut rules = Rules::of(&profile);
-    rules.forbid_holes();
-    assert_eq!(
-        reads(&profile, &rules, "voltage_a voltage_c"),
-        [(8, 2), (0x0C, 2)]
     );
 }

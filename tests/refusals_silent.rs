@@ -34,6 +34,7 @@ fn unread(troubles: &[Trouble]) -> Vec<(u16, u16, usize)> {
             read,
             failure: Failure::Silence { .. },
             untried,
+            ..
         } => (read.range.start().get(), read.range.count(), *untried),
         other => panic!("{other:?}"),
     });

@@ -97,8 +97,7 @@ fn setup_that_the_meter_refuses_leaves_what_depends_on_it_without_a_figure() {
         .stderr(format!(
             "error: unit 1 on {} at 9600 8N1, pt_ratio (registers 0x0901+1): the meter refused: \
              exception 02 (ILLEGAL DATA ADDRESS)\n\
-             hint: the meter has no such registers, or not as many at once; addresses are as on \
-             the wire, from 0 (for 40001 and the like see --numbering modicon)\n",
+             hint: this meter, or its firmware, has no such registers\n",
             meter.path()
         ))
         .run();

@@ -10,6 +10,7 @@ use super::{CommandError, ExitCode};
 use crate::cli::Usage;
 use crate::client::Failure;
 use crate::codec::{AddressError, ExceptionCode};
+use crate::output::escape;
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
 use crate::readings::Trouble;
@@ -66,14 +67,31 @@ impl Report {
     pub(super) fn trouble(&mut self, place: &Place<'_>, trouble: &Trouble) {
         say(format_args!("error: {}", trouble::text(place, trouble)));
         match trouble {
+            Trouble::Unread {
+                failure: Failure::Silence { .. },
+                is_alive: true,
+                ..
+            } => self.hint(Some(
+                "the meter answers other reads: it may not have these registers, or need a longer \
+                 --timeout"
+                    .to_owned(),
+            )),
             Trouble::Unread { failure, .. } => {
                 causes(failure);
                 self.hint(failure_hint(failure).map(str::to_owned));
             }
+            // Who names points need not be told of addresses.
+            Trouble::Refused { code, points }
+                if *code == ExceptionCode::ILLEGAL_DATA_ADDRESS && place.are_named(points) =>
+            {
+                self.hint(Some(
+                    "this meter, or its firmware, has no such registers".to_owned(),
+                ));
+            }
             Trouble::Refused { code, .. } => {
                 self.hint(failure_hint(&Failure::Exception(*code)).map(str::to_owned));
             }
-            Trouble::NoSetting { .. } => self.hint(Some(
+            Trouble::NoSetting { .. } | Trouble::NoScale { .. } => self.hint(Some(
                 "check the setup on the meter itself, and that it is the meter of --meter"
                     .to_owned(),
             )),
@@ -111,10 +129,10 @@ pub(super) fn untried_units(count: usize) {
     say(format_args!("error: {count} more {units} {were} not tried"));
 }
 
-/// Writes a line to stderr. Where stderr does not take it, there is nobody to tell, and the
-/// readings still go out.
+/// Writes a line to stderr, made safe for a terminal: it may quote a file or a meter. Where stderr
+/// does not take it, there is nobody to tell, and the readings still go out.
 fn say(line: fmt::Arguments<'_>) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", escape(&line.to_string()));
 }
 
 fn causes(error: &dyn Error) {

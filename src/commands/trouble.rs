@@ -19,6 +19,18 @@ pub(super) struct Place<'a> {
     pub(super) attempts: u32,
 }
 
+impl Place<'_> {
+    /// Whether these points have names of their own: those of registers are their addresses.
+    pub(super) fn are_named(&self, points: &[usize]) -> bool {
+        let mut points = points.iter().filter_map(|index| self.points.get(*index));
+        points.all(is_named)
+    }
+}
+
+fn is_named(point: &Point) -> bool {
+    point.name != point.range.start().to_string()
+}
+
 /// One line about it.
 pub(super) fn text(place: &Place<'_>, trouble: &Trouble) -> String {
     let at = format!("unit {} on {}", place.unit, place.line);
@@ -27,8 +39,19 @@ pub(super) fn text(place: &Place<'_>, trouble: &Trouble) -> String {
             read,
             failure,
             untried,
+            ..
         } => {
-            let mut text = format!("{at}, registers {}: {failure}", read.range);
+            let points = read
+                .points
+                .iter()
+                .filter_map(|index| place.points.get(*index));
+            let points: Vec<&Point> = points.collect();
+            let what = if points.len() > NAMED {
+                format!("registers {}", read.range)
+            } else {
+                names_and_registers(&points)
+            };
+            let mut text = format!("{at}, {what}: {failure}");
             if place.attempts > 1 && failure.is_worth_a_retry() {
                 text = format!("{text}, {} attempts", place.attempts);
             }
@@ -49,13 +72,16 @@ pub(super) fn text(place: &Place<'_>, trouble: &Trouble) -> String {
                 "{at}, {point}: registers {words} hold no such setting; what is scaled by it is missing"
             )
         }
+        Trouble::NoScale { point, factor } => {
+            format!("{at}, {point}: there is no {factor} to scale it by with this setup")
+        }
         Trouble::Impossible {
             point,
-            kind,
+            expected,
             registers,
         } => {
             let words = words(registers);
-            format!("{at}, {point}: registers {words} hold no {kind}")
+            format!("{at}, {point}: registers {words} hold no {expected}")
         }
     }
 }
@@ -68,10 +94,9 @@ fn words(registers: &[u16]) -> String {
 /// `current_a, current_b (registers 0x0240+1, 0x0250+1)`; registers by address have no other name.
 fn names_and_registers(points: &[&Point]) -> String {
     let registers = format!("registers {}", short(&stretches(points)));
-    let is_named = |point: &&&Point| point.name != point.range.start().to_string();
     let names: Vec<String> = points
         .iter()
-        .filter(is_named)
+        .filter(|point| is_named(point))
         .map(|point| point.name.clone())
         .collect();
     if names.is_empty() {

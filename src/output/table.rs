@@ -115,7 +115,7 @@ fn grid(points: &[Point], row: &Row) -> String {
 fn unit(point: &Point, reading: &Result<Value, Fault>) -> String {
     match reading {
         Ok(value) if !value.is_number() => String::new(),
-        _ => point.unit.clone().unwrap_or_default(),
+        _ => escape(point.unit.as_deref().unwrap_or_default()),
     }
 }
 

@@ -58,7 +58,7 @@ impl Verified<'_> {
             vec![
                 said(*verdict).to_owned(),
                 self.value(point),
-                point.unit.clone().unwrap_or_default(),
+                escape(point.unit.as_deref().unwrap_or_default()),
                 point.name.clone(),
             ]
         });

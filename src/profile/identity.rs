@@ -117,7 +117,7 @@ impl Identity {
             let Sides {
                 found, expected, ..
             } = sides;
-            if sides.is_too_small || greater < LEAST_STEPS * sides.steps {
+            if sides.is_too_small || greater == 0.0 || greater < LEAST_STEPS * sides.steps {
                 Outcome::TooSmall
             } else if (found - expected).abs() <= tolerance * greater + sides.steps {
                 Outcome::Holds { found, expected }

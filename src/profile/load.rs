@@ -300,9 +300,10 @@ fn shared_labels(
     tables: &BTreeMap<Spanned<String>, LabelTable>,
 ) -> Result<SharedLabels, ProfileError> {
     let tables = tables.iter().map(|(name, table)| {
-        let name = name.as_ref();
-        let names = point::label_names(source, table, &format!("labels.{name}"))?;
-        Ok((name.clone(), Arc::new(names)))
+        let key = format!("labels.{}", name.as_ref());
+        source.name(name, &key)?;
+        let names = point::label_names(source, table, &key)?;
+        Ok((name.as_ref().clone(), Arc::new(names)))
     });
     tables.collect()
 }

@@ -116,6 +116,12 @@ pub struct OnlyWith {
     pub codes: Vec<u16>,
 }
 
+impl OnlyWith {
+    fn means_something(&self, setting: i128) -> bool {
+        self.codes.iter().any(|code| i128::from(*code) == setting)
+    }
+}
+
 impl Point {
     /// A raw register as a point: read only, no labels, nothing known about it.
     pub fn raw(range: RegisterRange, kind: RegisterType, order: ByteOrder) -> Self {
@@ -150,12 +156,12 @@ impl Point {
 
     /// The difference that one raw step makes, on a meter that is set up like this; 0 where steps
     /// are not known or too small to tell.
-    pub fn step(&self, scales: Scales<'_>) -> f64 {
+    pub fn step(&self, scales: &Scales) -> f64 {
         let step = match (&self.scaling, self.kind.is_integer()) {
             (_, false) => None,
             (Scaling::Times(scale), true) => Some(*scale),
             (Scaling::TimesFactor(name), true) => scales.named(name).ok(),
-            (Scaling::TimesByRaw(bands), true) => bands.iter().map(|band| band.factor).max(),
+            (Scaling::TimesByRaw(bands), true) => bands.iter().map(|band| band.factor.abs()).max(),
             (Scaling::Span { full, low, high }, true) => scales
                 .operand(high)
                 .ok()
@@ -171,23 +177,13 @@ impl Point {
     /// # Errors
     /// [`Missing`] when the meter marks the value as not there, when it means nothing with this
     /// setup, or when the registers cannot hold one.
-    pub fn interpret(&self, registers: &[u16], scales: Scales<'_>) -> Result<Value, Missing> {
+    pub fn interpret(&self, registers: &[u16], scales: &Scales) -> Result<Value, Missing> {
         if let Some(with) = &self.only_with
-            && !with.codes.contains(&scales.code(&with.point)?)
+            && !with.means_something(scales.setting(&with.point)?)
         {
             return Err(Missing::Absent);
         }
-        let raw = value::decode(self.kind, self.order, registers).map_err(|error| match error {
-            ValueError::Unset => Missing::Absent,
-            ValueError::Length { .. } | ValueError::Impossible { .. } => Missing::Mismatch,
-        });
-        // The marker comes first: what it stands for need not be a value of the type.
-        if let Some(no_value) = self.no_value
-            && self.is_marked(no_value.marker, registers, raw.as_ref().ok())
-        {
-            return Err(no_value.missing);
-        }
-        match raw? {
+        match self.raw_value(registers)? {
             Raw::Integer(number) => self.integer(number, scales),
             Raw::Single(number) => self.single(number),
             Raw::Double(number) => self.double(number),
@@ -195,6 +191,24 @@ impl Point {
             Raw::Text(text) => Ok(Value::Text(text)),
             Raw::Time(time) => Ok(Value::Text(format!("{time:.3}"))),
             Raw::Date(date) => Ok(Value::Text(date.to_string())),
+        }
+    }
+
+    /// What the registers of this point hold, before its scale.
+    ///
+    /// # Errors
+    /// [`Missing`] when the meter marks the value as not there, or the registers cannot hold one.
+    pub(super) fn raw_value(&self, registers: &[u16]) -> Result<Raw, Missing> {
+        let raw = value::decode(self.kind, self.order, registers).map_err(|error| match error {
+            ValueError::Unset => Missing::Absent,
+            ValueError::Length { .. } | ValueError::Impossible { .. } => Missing::Mismatch,
+        });
+        // The marker comes first: what it stands for need not be a value of the type.
+        match self.no_value {
+            Some(no_value) if self.is_marked(no_value.marker, registers, raw.as_ref().ok()) => {
+                Err(no_value.missing)
+            }
+            _ => raw,
         }
     }
 
@@ -209,7 +223,7 @@ impl Point {
         }
     }
 
-    fn integer(&self, number: i128, scales: Scales<'_>) -> Result<Value, Missing> {
+    fn integer(&self, number: i128, scales: &Scales) -> Result<Value, Missing> {
         if let (Labels::Codes(codes), Some(code)) = (&self.labels, register(number))
             && let Some(label) = codes.get(&code)
         {
@@ -217,7 +231,11 @@ impl Point {
         }
         let factor = match &self.scaling {
             Scaling::Times(scale) => *scale,
-            Scaling::TimesFactor(name) => scales.named(name)?,
+            // Nothing is measured in steps of 0.
+            Scaling::TimesFactor(name) => match scales.named(name)? {
+                step if step.is_zero() => return Err(Missing::Mismatch),
+                step => step,
+            },
             Scaling::TimesByRaw(bands) => {
                 let holds = |band: &&Band| (band.lowest..=band.highest).contains(&number);
                 bands.iter().find(holds).ok_or(Missing::Mismatch)?.factor

@@ -1,7 +1,7 @@
 //! How the raw integer of a register becomes a figure, where that takes more than one factor: some
 //! meters measure in parts of a full scale that follows from their wiring and their transformers.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use rust_decimal::{Decimal, RoundingStrategy};
@@ -93,6 +93,66 @@ impl Factor {
         };
         let named = operands.into_iter().filter_map(Operand::name);
         by.into_iter().chain(named).collect()
+    }
+}
+
+/// Indices of factors, each behind those it follows from.
+///
+/// # Errors
+/// The indices of factors that follow from each other in a circle, in the order of the way round.
+pub(super) fn in_order(factors: &[Factor]) -> Result<Vec<usize>, Vec<usize>> {
+    let places: BTreeMap<&str, usize> = factors
+        .iter()
+        .enumerate()
+        .map(|(index, factor)| (factor.name.as_str(), index))
+        .collect();
+    let needs: Vec<BTreeSet<usize>> = factors
+        .iter()
+        .map(|factor| {
+            let names = factor.names().into_iter();
+            names.filter_map(|name| places.get(name).copied()).collect()
+        })
+        .collect();
+    let mut needed_by: Vec<Vec<usize>> = vec![Vec::new(); factors.len()];
+    for (index, needs) in needs.iter().enumerate() {
+        for need in needs {
+            needed_by[*need].push(index);
+        }
+    }
+    // A factor comes when all that it follows from has come.
+    let mut waits: Vec<usize> = needs.iter().map(BTreeSet::len).collect();
+    let mut order: Vec<usize> = (0..factors.len())
+        .filter(|index| waits[*index] == 0)
+        .collect();
+    let mut next = 0;
+    while let Some(index) = order.get(next).copied() {
+        next += 1;
+        for waiting in &needed_by[index] {
+            waits[*waiting] -= 1;
+            if waits[*waiting] == 0 {
+                order.push(*waiting);
+            }
+        }
+    }
+    match waits.iter().position(|waits| *waits > 0) {
+        None => Ok(order),
+        Some(stuck) => Err(circle(stuck, &needs, &waits)),
+    }
+}
+
+/// A way round among factors that wait for each other, from one that cannot come.
+fn circle(stuck: usize, needs: &[BTreeSet<usize>], waits: &[usize]) -> Vec<usize> {
+    let mut way = vec![stuck];
+    loop {
+        let last = way[way.len() - 1];
+        // What cannot come waits for something that cannot come either.
+        let Some(next) = needs[last].iter().copied().find(|need| waits[*need] > 0) else {
+            return way;
+        };
+        if let Some(start) = way.iter().position(|index| *index == next) {
+            return way.split_off(start);
+        }
+        way.push(next);
     }
 }
 

@@ -1,4 +1,4 @@
-//! What scales depend on: which registers are read besides those asked for, and the factors that
+//! What scales depend on: which registers are read besides those asked for, and the numbers that
 //! follow from them.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,14 +7,15 @@ use rust_decimal::Decimal;
 
 use super::model::Profile;
 use super::point::Point;
-use super::scaling::{Factor, Operand, Rule, times};
+use super::scaling::{Factor, Operand, Rule, Scaling, in_order, times};
 use super::value::Missing;
-use crate::codec::value::{self, Raw};
+use crate::codec::value::Raw;
 
 /// The setup registers that points depend on, and how.
 #[derive(Debug, Clone, Default)]
 pub struct Setup {
     points: Vec<Point>,
+    /// Each behind those it follows from.
     factors: Vec<Factor>,
 }
 
@@ -28,12 +29,15 @@ impl Setup {
             .iter()
             .flat_map(|point| profile.setup_of(point))
             .collect();
+        // The loader lets no factor come back to itself.
+        let order = in_order(&profile.factors).unwrap_or_default();
+        let factors = order.iter().filter_map(|index| profile.factors.get(*index));
         Self {
             points: names
                 .into_iter()
                 .filter_map(|name| profile.point(name).cloned())
                 .collect(),
-            factors: profile.factors.clone(),
+            factors: factors.cloned().collect(),
         }
     }
 
@@ -53,23 +57,40 @@ impl Setup {
         needed(point, &self.factors)
     }
 
-    /// Works with the registers of the setup points: `registers` has those that were read, by name.
-    pub fn scales<'a>(&'a self, registers: &'a BTreeMap<String, Vec<u16>>) -> Scales<'a> {
-        Scales {
-            setup: self,
-            registers,
+    /// What follows from setup registers: `registers` has those that were read, by the names of
+    /// their points.
+    pub fn scales(&self, registers: &BTreeMap<String, Vec<u16>>) -> Scales {
+        let mut scales = Scales::default();
+        for point in &self.points {
+            let raw = match registers.get(&point.name) {
+                Some(registers) => setting(point, registers),
+                None => Err(Missing::Mismatch),
+            };
+            let number = raw.and_then(|raw| {
+                let scale = point.constant_scale().ok_or(Missing::Mismatch)?;
+                times(raw, 0, scale).ok_or(Missing::Mismatch)
+            });
+            scales.settings.insert(point.name.clone(), raw);
+            scales.numbers.insert(point.name.clone(), number);
         }
+        for factor in &self.factors {
+            let number = scales.follow(&factor.rule);
+            scales.numbers.insert(factor.name.clone(), number);
+        }
+        scales
     }
 }
 
 /// The names of the setup points that a point of a meter with these factors needs.
 pub(super) fn needed<'a>(point: &'a Point, factors: &'a [Factor]) -> BTreeSet<&'a str> {
     let mut open = point.scaling.names();
+    let mut seen: BTreeSet<&str> = open.iter().copied().collect();
     let mut points: BTreeSet<&str> = point.only_with.iter().map(|with| &*with.point).collect();
     while let Some(name) = open.pop() {
-        // The loader lets no factor come back to itself, so this ends.
         match factors.iter().find(|factor| factor.name == name) {
-            Some(factor) => open.extend(factor.names()),
+            Some(factor) => {
+                open.extend(factor.names().into_iter().filter(|name| seen.insert(name)))
+            }
             None => {
                 points.insert(name);
             }
@@ -78,35 +99,51 @@ pub(super) fn needed<'a>(point: &'a Point, factors: &'a [Factor]) -> BTreeSet<&'
     points
 }
 
-/// Setup registers as they were read, ready to scale with.
-#[derive(Debug, Clone, Copy)]
-pub struct Scales<'a> {
-    setup: &'a Setup,
-    registers: &'a BTreeMap<String, Vec<u16>>,
+/// The raw number of a setup point, which must be one that could have been written there: a
+/// transformer ratio of 0 would make every reading 0.
+fn setting(point: &Point, registers: &[u16]) -> Result<i128, Missing> {
+    let raw = match point.raw_value(registers)? {
+        Raw::Integer(number) => number,
+        Raw::Word(word) => word.into(),
+        _ => return Err(Missing::Mismatch),
+    };
+    match point.limits {
+        Some((lowest, highest)) if !(lowest..=highest).contains(&raw) => Err(Missing::Mismatch),
+        _ => Ok(raw),
+    }
 }
 
-static NO_SETUP: Setup = Setup {
-    points: Vec::new(),
-    factors: Vec::new(),
-};
+/// The numbers to scale with, as they follow from the setup of one meter.
+#[derive(Debug, Clone, Default)]
+pub struct Scales {
+    /// The raw numbers of setup points.
+    settings: BTreeMap<String, Result<i128, Missing>>,
+    /// The numbers of setup points and factors.
+    numbers: BTreeMap<String, Result<Decimal, Missing>>,
+}
 
-static NO_REGISTERS: BTreeMap<String, Vec<u16>> = BTreeMap::new();
-
-impl Scales<'_> {
-    /// For points that depend on no setup.
-    pub const fn none() -> Scales<'static> {
-        Scales {
-            setup: &NO_SETUP,
-            registers: &NO_REGISTERS,
-        }
+impl Scales {
+    /// Whether a setup point holds a setting.
+    ///
+    /// # Errors
+    /// Why it holds none; [`Missing::Mismatch`] too when it was not read.
+    pub fn setting(&self, name: &str) -> Result<i128, Missing> {
+        let setting = self.settings.get(name).copied();
+        setting.unwrap_or(Err(Missing::Mismatch))
     }
 
-    /// The number of an operand.
+    /// The number of a factor or of a setup point.
     ///
     /// # Errors
     /// [`Missing::Mismatch`] when a register it follows from was not read or holds what it cannot:
     /// nothing can be scaled with that.
-    pub fn operand(&self, operand: &Operand) -> Result<Decimal, Missing> {
+    pub(super) fn named(&self, name: &str) -> Result<Decimal, Missing> {
+        let number = self.numbers.get(name).copied();
+        number.unwrap_or(Err(Missing::Mismatch))
+    }
+
+    /// The number of an operand.
+    pub(super) fn operand(&self, operand: &Operand) -> Result<Decimal, Missing> {
         match operand {
             Operand::Number(number) => Ok(*number),
             Operand::Named { name, negative } => {
@@ -116,18 +153,22 @@ impl Scales<'_> {
         }
     }
 
-    /// The number of a factor or of a setup point.
-    ///
-    /// # Errors
-    /// As [`Self::operand`].
-    pub fn named(&self, name: &str) -> Result<Decimal, Missing> {
-        let factor = self.setup.factors.iter().find(|factor| factor.name == name);
-        let Some(factor) = factor else {
-            let (point, raw) = self.raw(name)?;
-            let scale = point.constant_scale().ok_or(Missing::Mismatch)?;
-            return times(raw, 0, scale).ok_or(Missing::Mismatch);
+    /// The first of the numbers a point is scaled by that there is none of, or that makes no scale:
+    /// a step of 0, or an end of a span that is its other end.
+    pub fn lacking<'a>(&self, point: &'a Point) -> Option<&'a str> {
+        let names = point.scaling.names();
+        let is_nothing = match &point.scaling {
+            Scaling::TimesFactor(name) => self.named(name) == Ok(Decimal::ZERO),
+            Scaling::Span { low, high, .. } => self.operand(low) == self.operand(high),
+            Scaling::Times(_) | Scaling::TimesByRaw(_) => false,
         };
-        match &factor.rule {
+        names
+            .into_iter()
+            .find(|name| is_nothing || self.named(name).is_err())
+    }
+
+    fn follow(&self, rule: &Rule) -> Result<Decimal, Missing> {
+        match rule {
             Rule::Product(operands) => {
                 operands.iter().try_fold(Decimal::ONE, |product, operand| {
                     let product = product.checked_mul(self.operand(operand)?);
@@ -139,42 +180,10 @@ impl Scales<'_> {
                 cases,
                 otherwise,
             } => {
-                let chosen = cases.get(&self.code(by)?).or(otherwise.as_ref());
+                let code = u16::try_from(self.setting(by)?).map_err(|_| Missing::Mismatch)?;
+                let chosen = cases.get(&code).or(otherwise.as_ref());
                 self.operand(chosen.ok_or(Missing::Mismatch)?)
             }
-        }
-    }
-
-    /// The raw number of a setup point of one register.
-    ///
-    /// # Errors
-    /// As [`Self::operand`].
-    pub fn code(&self, name: &str) -> Result<u16, Missing> {
-        let (_, raw) = self.raw(name)?;
-        u16::try_from(raw).map_err(|_| Missing::Mismatch)
-    }
-
-    /// Whether a setup point holds something that can be scaled with.
-    pub fn has(&self, name: &str) -> bool {
-        self.raw(name).is_ok()
-    }
-
-    /// A setup point and its raw number, which must be one that could have been written there: a
-    /// transformer ratio of 0 would make every reading 0.
-    fn raw(&self, name: &str) -> Result<(&Point, i128), Missing> {
-        let point = self.setup.points.iter().find(|point| point.name == name);
-        let registers = self.registers.get(name);
-        let (Some(point), Some(registers)) = (point, registers) else {
-            return Err(Missing::Mismatch);
-        };
-        let raw = match value::decode(point.kind, point.order, registers) {
-            Ok(Raw::Integer(number)) => number,
-            Ok(Raw::Word(word)) => word.into(),
-            _ => return Err(Missing::Mismatch),
-        };
-        match point.limits {
-            Some((lowest, highest)) if !(lowest..=highest).contains(&raw) => Err(Missing::Mismatch),
-            _ => Ok((point, raw)),
         }
     }
 }

@@ -249,6 +249,7 @@ impl Gathering<'_> {
         self.harvest.tell(Trouble::Unread {
             read: read.clone(),
             failure,
+            is_alive: self.has_answered,
             untried,
         });
         Outcome::Lost
@@ -292,7 +293,8 @@ impl Gathering<'_> {
         let shape = self.shape(read);
         let left = self.harvest.missing_of(read);
         // A rule that was learned since makes better parts.
-        let is_explained = !self.memory.allows(shape);
+        let holes = read.holes(self.points());
+        let is_explained = !self.memory.allows(shape, &holes);
         let parts = if is_explained {
             self.plan(left)
         } else {
@@ -309,7 +311,6 @@ impl Gathering<'_> {
             }
         }
         if !is_explained && self.harvest.has_all(read) {
-            let holes = read.holes(self.points());
             let lessons = self.memory.learn_from_parts(shape, &holes, cause);
             self.heed(&lessons);
         }

@@ -62,8 +62,9 @@ impl fmt::Display for Lesson {
             ),
             Self::Limit(most) => write!(
                 f,
-                "no more than {most} registers are read at once from now on; a profile says so \
-                 with limits.read_registers = {most}"
+                "no more than {most} registers, which worked, are read at once from now on; a \
+                 profile says so with limits.read_registers = {most}, or more where the meter \
+                 gives more"
             ),
             Self::Border(_, range) => write!(
                 f,

@@ -2,69 +2,57 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Fault, Memory, Trouble};
+use super::{Fault, Trouble};
 use crate::profile::scaling::Scaling;
 use crate::profile::{Missing, Point, Scales, Setup, Value};
 
-/// The setup registers of one unit: what came of each, by the names of their points.
-#[derive(Debug, Default)]
+/// The setup of one unit as it was read just now.
+#[derive(Debug)]
 pub(super) struct Held {
-    good: BTreeMap<String, Vec<u16>>,
-    bad: BTreeMap<String, Fault>,
+    /// What there is to scale with.
+    pub(super) scales: Scales,
+    /// Why a setting is not there, by the name of its point.
+    missing: BTreeMap<String, Fault>,
 }
 
 impl Held {
-    /// What was read now, and what is remembered of the rest. What is no setting, or was not to be
-    /// had, is not remembered.
+    /// The setup among the registers of points that were read.
     pub(super) fn new(
         setup: &Setup,
         points: &[Point],
         registers: &[Result<Vec<u16>, Fault>],
-        memory: &mut Memory,
         troubles: &mut Vec<Trouble>,
     ) -> Self {
-        let mut held = Self::default();
+        let mut good: BTreeMap<String, Vec<u16>> = BTreeMap::new();
+        let mut missing: BTreeMap<String, Fault> = BTreeMap::new();
         for needed in setup.points() {
-            let read = points.iter().position(|point| point.name == needed.name);
-            let found = match read.and_then(|index| registers.get(index)) {
-                Some(Ok(registers)) => registers.clone(),
-                Some(Err(fault)) => {
-                    held.bad.insert(needed.name.clone(), *fault);
-                    continue;
-                }
-                None => match memory.setup(&needed.name) {
-                    Some(registers) => registers.to_vec(),
-                    None => continue,
-                },
+            let name = needed.name.clone();
+            let index = points.iter().position(|point| point.name == name);
+            match index.and_then(|index| registers.get(index)) {
+                Some(Ok(registers)) => drop(good.insert(name, registers.clone())),
+                Some(Err(fault)) => drop(missing.insert(name, *fault)),
+                None => {}
+            }
+        }
+        let scales = setup.scales(&good);
+        for (name, registers) in good {
+            let Err(reason) = scales.setting(&name) else {
+                continue;
             };
-            held.good.insert(needed.name.clone(), found);
+            missing.insert(name.clone(), reason.into());
+            if reason == Missing::Mismatch {
+                troubles.push(Trouble::NoSetting {
+                    point: name,
+                    registers,
+                });
+            }
         }
-        let impossible: Vec<String> = held
-            .good
-            .keys()
-            .filter(|name| !setup.scales(&held.good).has(name))
-            .cloned()
-            .collect();
-        for name in impossible {
-            let registers = held.good.remove(&name).unwrap_or_default();
-            held.bad.insert(name.clone(), Fault::Mismatch);
-            troubles.push(Trouble::NoSetting {
-                point: name,
-                registers,
-            });
-        }
-        memory.keep_setup(&held.good);
-        held
-    }
-
-    /// The registers to scale with.
-    pub(super) const fn registers(&self) -> &BTreeMap<String, Vec<u16>> {
-        &self.good
+        Self { scales, missing }
     }
 
     /// Why one of these is not there.
     fn fault(&self, needed: &BTreeSet<&str>) -> Option<Fault> {
-        let faults = needed.iter().filter_map(|name| self.bad.get(*name));
+        let faults = needed.iter().filter_map(|name| self.missing.get(*name));
         faults.max().copied()
     }
 }
@@ -77,41 +65,38 @@ pub(super) fn interpret(
     held: &Held,
     troubles: &mut Vec<Trouble>,
 ) -> Vec<Result<Value, Fault>> {
-    let scales = setup.scales(held.registers());
     let mut value = |(point, registers): (&Point, &Result<Vec<u16>, Fault>)| {
         let registers = registers.as_deref().map_err(|fault| *fault)?;
         if let Some(fault) = held.fault(&setup.needed_by(point)) {
             return Err(fault);
         }
-        one(point, registers, scales, troubles)
+        point.interpret(registers, &held.scales).map_err(|missing| {
+            if missing == Missing::Mismatch {
+                troubles.push(impossible(point, registers, &held.scales));
+            }
+            Fault::from(missing)
+        })
     };
     points.iter().zip(registers).map(&mut value).collect()
 }
 
-fn one(
-    point: &Point,
-    registers: &[u16],
-    scales: Scales<'_>,
-    troubles: &mut Vec<Trouble>,
-) -> Result<Value, Fault> {
-    point.interpret(registers, scales).map_err(|missing| {
-        if missing == Missing::Mismatch {
-            troubles.push(Trouble::Impossible {
-                point: point.name.clone(),
-                kind: expected(point),
-                registers: registers.to_vec(),
-            });
-        }
-        Fault::from(missing)
-    })
-}
-
-/// What the registers of a point should have held.
-fn expected(point: &Point) -> String {
-    match &point.scaling {
-        Scaling::Times(_) => point.kind.to_string(),
-        Scaling::TimesFactor(name) => format!("{} that {name} gives a figure for", point.kind),
+/// Why registers make no figure: for want of a scale, or for what they hold themselves.
+fn impossible(point: &Point, registers: &[u16], scales: &Scales) -> Trouble {
+    let name = point.name.clone();
+    if let Some(factor) = scales.lacking(point) {
+        return Trouble::NoScale {
+            point: name,
+            factor: factor.to_owned(),
+        };
+    }
+    let expected = match &point.scaling {
         Scaling::TimesByRaw(_) => format!("{} that there is a scale for", point.kind),
         Scaling::Span { full, .. } => format!("{} from 0 to {full}", point.kind),
+        Scaling::Times(_) | Scaling::TimesFactor(_) => point.kind.to_string(),
+    };
+    Trouble::Impossible {
+        point: name,
+        expected,
+        registers: registers.to_vec(),
     }
 }

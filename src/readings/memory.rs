@@ -1,6 +1,6 @@
 //! What is known of a unit for as long as the program runs.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::lesson::Lesson;
 use crate::codec::{ReadFunction, RegisterRange};
@@ -25,9 +25,13 @@ pub struct Memory {
     largest: u16,
     /// The reads with holes it answered.
     crossed: BTreeSet<(ReadFunction, RegisterRange)>,
-    /// The registers that its scales depend on, by the names of their points.
-    setup: BTreeMap<String, Vec<u16>>,
 }
+
+/// So many registers every meter gives at once, where nothing else stands in the way.
+const SMALL: u16 = 8;
+
+/// The most reads with holes that are remembered as answered.
+const MOST_CROSSED: usize = 1000;
 
 /// Why a unit did not give registers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,7 +61,6 @@ impl Memory {
             suspected: Vec::new(),
             largest: 0,
             crossed: BTreeSet::new(),
-            setup: BTreeMap::new(),
         }
     }
 
@@ -75,10 +78,9 @@ impl Memory {
         self.rules = self.lasting.clone();
     }
 
-    /// Whether the rules let this be read for several points at once.
-    pub(super) fn allows(&self, read: Shape) -> bool {
-        self.rules.allow(read.function, read.range)
-            && (self.rules.may_cross_holes() || !read.has_holes)
+    /// Whether the rules let this be read for several points at once, with these holes between them.
+    pub(super) fn allows(&self, read: Shape, holes: &[RegisterRange]) -> bool {
+        self.rules.allow(read.function, read.range, holes)
     }
 
     /// Whether the unit has shown that it answers such a read: as many registers at once, and of
@@ -95,6 +97,10 @@ impl Memory {
     pub(super) fn answered(&mut self, read: Shape) {
         self.largest = self.largest.max(read.range.count());
         if read.has_holes {
+            // Plans move with the measured answer time; over years there could be very many.
+            if self.crossed.len() >= MOST_CROSSED {
+                self.crossed.clear();
+            }
             self.crossed.insert((read.function, read.range));
         }
         self.suspected
@@ -113,7 +119,8 @@ impl Memory {
             function, range, ..
         } = read;
         let are_known = holes.iter().all(|hole| self.rules.knows(function, *hole));
-        let lessons = if holes.is_empty() && range.count() <= self.largest {
+        let is_small = range.count() <= SMALL;
+        let lessons = if holes.is_empty() && (is_small || range.count() <= self.largest) {
             // So it is not the number of registers.
             vec![Lesson::Border(function, range)]
         } else if holes.is_empty() {
@@ -136,16 +143,6 @@ impl Memory {
         let lesson = Lesson::Refused(read.function, read.range);
         self.learn(lesson, cause);
         vec![lesson]
-    }
-
-    /// The registers of a setup point, once it has been read.
-    pub(super) fn setup(&self, point: &str) -> Option<&[u16]> {
-        self.setup.get(point).map(Vec::as_slice)
-    }
-
-    /// Keeps what setup points hold.
-    pub(super) fn keep_setup(&mut self, registers: &BTreeMap<String, Vec<u16>>) {
-        self.setup.extend(registers.clone());
     }
 
     fn learn(&mut self, lesson: Lesson, cause: Cause) {

@@ -8,7 +8,7 @@ use super::{Memory, Row};
 use crate::client::{Client, Failure, Patience};
 use crate::codec::{ExceptionCode, ReadFunction, Unit};
 use crate::profile::plan::{Cost, PlannedRead};
-use crate::profile::{Point, Setup};
+use crate::profile::{Point, Scales, Setup};
 
 /// What is asked of a unit.
 #[derive(Debug, Clone, Copy)]
@@ -38,6 +38,8 @@ pub enum Trouble {
         read: PlannedRead,
         /// Why.
         failure: Failure,
+        /// Whether the unit has answered other reads.
+        is_alive: bool,
         /// How many further reads were not tried because the unit was silent or the port gone.
         untried: usize,
     },
@@ -56,12 +58,19 @@ pub enum Trouble {
         /// The registers.
         registers: Vec<u16>,
     },
+    /// The setup gives no number to scale a point by.
+    NoScale {
+        /// The point's name.
+        point: String,
+        /// The factor or setup point there is no number of.
+        factor: String,
+    },
     /// Registers arrived and hold what the point's type cannot.
     Impossible {
         /// The point's name.
         point: String,
-        /// Its type.
-        kind: String,
+        /// What they should hold.
+        expected: String,
         /// The registers.
         registers: Vec<u16>,
     },
@@ -72,8 +81,8 @@ pub enum Trouble {
 pub struct Taken<'a> {
     /// The readings of what was asked for.
     pub row: Row,
-    /// The difference that one raw step of each reading makes; 0 where there are no steps.
-    pub steps: Vec<f64>,
+    /// What the setup of the unit gives to scale with.
+    pub scales: Scales,
     /// What was asked for, and behind it what had to be read besides.
     pub points: Cow<'a, [Point]>,
     /// What went wrong.
@@ -81,18 +90,14 @@ pub struct Taken<'a> {
 }
 
 /// Reads the points of one unit, in as few requests as it is known to allow, and with them the
-/// setup registers that their scales depend on, unless they are known. A unit that does not answer
+/// setup registers that their scales depend on: each time, for somebody may have changed them since.
+/// A unit that does not answer
 /// at all, or stops answering, is not asked further: every other read would cost a time-out as
 /// well.
 pub fn take<'a>(client: &mut Client, inquiry: &Inquiry<'a, '_>, memory: &mut Memory) -> Taken<'a> {
     let time = client.utc_now();
     let asked = inquiry.points;
-    let is_known = |needed: &&Point| memory.setup(&needed.name).is_some();
-    let besides = inquiry
-        .setup
-        .besides(asked)
-        .filter(|needed| !is_known(needed));
-    let besides: Vec<Point> = besides.cloned().collect();
+    let besides: Vec<Point> = inquiry.setup.besides(asked).cloned().collect();
     let points = if besides.is_empty() {
         Cow::Borrowed(asked)
     } else {
@@ -103,8 +108,7 @@ pub fn take<'a>(client: &mut Client, inquiry: &Inquiry<'a, '_>, memory: &mut Mem
         ..*inquiry
     };
     let (registers, mut troubles) = gather(client, &all, memory);
-    let held = Held::new(inquiry.setup, &points, &registers, memory, &mut troubles);
-    let scales = inquiry.setup.scales(held.registers());
+    let held = Held::new(inquiry.setup, &points, &registers, &mut troubles);
     let row = Row {
         time,
         meter: inquiry.meter.to_owned(),
@@ -113,7 +117,7 @@ pub fn take<'a>(client: &mut Client, inquiry: &Inquiry<'a, '_>, memory: &mut Mem
     };
     Taken {
         row,
-        steps: asked.iter().map(|point| point.step(scales)).collect(),
+        scales: held.scales,
         points,
         troubles,
     }

@@ -27,11 +27,7 @@ use super::words::{counter, rounded, text};
 
 /// What functions 03 and 04 can read: product information; user map and actual values; setpoints. The
 /// command area behind the first is write only.
-const AREAS: [RangeInclusive<u16>; 3] = [
-    0x0000..=0x007F,
-    0x0100..=0x0E1F,
-    0x1000..=0x131F,
-];
+const AREAS: [RangeInclusive<u16>; 3] = [0x0000..=0x007F, 0x0100..=0x0E1F, 0x1000..=0x131F];
 
 /// Cents for a kilowatt hour: the factory setting of all three tariffs (manual page 233).
 const CENTS_PER_KILOWATT_HOUR: f64 = 10.0;

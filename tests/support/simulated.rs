@@ -95,7 +95,7 @@ pub(crate) fn value(
         .iter()
         .map(|point| (point.name.clone(), registers(point, measured)))
         .collect();
-    point.interpret(&registers(point, measured), setup.scales(&read))
+    point.interpret(&registers(point, measured), &setup.scales(&read))
 }
 
 /// The value of a point that is a number.

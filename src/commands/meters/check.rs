@@ -41,8 +41,9 @@ fn check(file: &Path, is_quiet: bool) -> Result<String, FindError> {
     for advice in advice {
         let _ = writeln!(
             text,
-            "{name}:{}: {}: {}",
-            advice.line, advice.key, advice.matter
+            "{name}:{}: {}",
+            advice.line,
+            escape(&format!("{}: {}", advice.key, advice.matter))
         );
     }
     Ok(text)

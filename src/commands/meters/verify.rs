@@ -30,7 +30,8 @@ pub(super) fn run(arguments: &VerifyMeter, report: &mut Report) -> Result<ExitCo
     let stop = Stop::listen();
     let mut code = Ok(ExitCode::Done);
     for (index, unit) in units.into_iter().enumerate() {
-        let Taken { row, steps, .. } = asking.ask(unit, &mut client, report);
+        let Taken { row, scales, .. } = asking.ask(unit, &mut client, report);
+        let steps = points.iter().map(|point| point.step(&scales));
         let readings = row.readings.iter().cloned().zip(steps);
         let named = points.iter().map(|point| point.name.clone());
         let readings: BTreeMap<String, _> = named.zip(readings).collect();

@@ -124,9 +124,12 @@ fn can_be_mains(point: &Point) -> bool {
     };
     let holds = |lowest: i128, highest: i128, factor: Decimal| {
         let (low, high) = MAINS;
-        let first = (Decimal::from(low) / factor).ceil();
-        let last = (Decimal::from(high) / factor).floor();
-        match (first.to_i128(), last.to_i128()) {
+        let first = Decimal::from(low).checked_div(factor);
+        let last = Decimal::from(high).checked_div(factor);
+        let whole = |number: Option<Decimal>, round: fn(&Decimal) -> Decimal| {
+            number.and_then(|number| round(&number).to_i128())
+        };
+        match (whole(first, Decimal::ceil), whole(last, Decimal::floor)) {
             (Some(first), Some(last)) => first.max(lowest) <= last.min(highest),
             _ => true,
         }

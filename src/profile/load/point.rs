@@ -27,9 +27,9 @@ pub(super) fn row(
     };
     let key = |key: &str| format!("{}.{key}", first.name);
     let (start, width) = (first.range.start().get(), first.range.count());
-    let most = (u16::MAX - start) / width;
-    if !(2..=most).contains(repeat.as_ref()) {
-        let expected = format!("2 to {most}, as many as lie below 0xFFFF");
+    let most = (0x1_0000 - u32::from(start)) / u32::from(width);
+    if !(2..=most).contains(&u32::from(*repeat.as_ref())) {
+        let expected = format!("2 or more, of which {most} lie within 0xFFFF");
         return Err(source.value(repeat, &key("repeat"), expected));
     }
     let places = (0..*repeat.as_ref()).map(|place| {

@@ -13,7 +13,7 @@ use crate::profile::format::{
     BandTable, FactorTable, Number, OnlyWithTable, OperandKey, PointTable, ScaleKey, SpanTable,
 };
 use crate::profile::point::Point;
-use crate::profile::scaling::{Band, Factor, Operand, Rule, Scaling, times};
+use crate::profile::scaling::{Band, Factor, Operand, Rule, Scaling, in_order, times};
 
 /// The scale of one point; which names there are is checked when all points and factors are known.
 pub(super) fn scaling(
@@ -106,13 +106,17 @@ fn banded(
     if tables.is_empty() {
         return Err(source.value(scale, key, "a list of { raw, factor }"));
     }
+    let (least, most) = kind.bounds().unwrap_or_default();
+    let holds = |number: i64| (least..=most).contains(&number.into());
     let mut bands: Vec<Band> = Vec::with_capacity(tables.len());
     for table in tables {
         let factor = scaled(source, &table.factor, kind, &format!("{key}.factor"))?;
         let (lowest, highest) = match *table.raw.as_ref().as_slice() {
-            [lowest, highest] if lowest <= highest => (lowest.into(), highest.into()),
+            [lowest, highest] if lowest <= highest && holds(lowest) && holds(highest) => {
+                (lowest.into(), highest.into())
+            }
             _ => {
-                let expected = "[lowest, highest] raw number";
+                let expected = format!("[lowest, highest] raw number of {kind}");
                 return Err(source.value(&table.raw, &format!("{key}.raw"), expected));
             }
         };
@@ -140,10 +144,16 @@ fn spanned(
     if *table.full.as_ref() == 0 {
         return Err(source.value(&table.full, &key("span.full"), "above 0"));
     }
+    let low = operand(source, &table.low, &key("span.low"))?;
+    let high = operand(source, &table.high, &key("span.high"))?;
+    if low == high {
+        let expected = "another than low: between them lies nothing";
+        return Err(source.value(&table.high, &key("span.high"), expected));
+    }
     Ok(Scaling::Span {
         full: *table.full.as_ref(),
-        low: operand(source, &table.low, &key("span.low"))?,
-        high: operand(source, &table.high, &key("span.high"))?,
+        low,
+        high,
     })
 }
 
@@ -156,10 +166,21 @@ fn operand(
         OperandKey::Number(number) => decimal(*number)
             .map(Operand::Number)
             .ok_or_else(|| source.value(found, key, "a number of at most 28 digits")),
-        OperandKey::Name(name) => Ok(Operand::Named {
-            name: name.trim_start_matches('-').to_owned(),
-            negative: name.starts_with('-'),
-        }),
+        OperandKey::Name(name) => {
+            let (negative, name) = signed(name);
+            Ok(Operand::Named {
+                name: name.to_owned(),
+                negative,
+            })
+        }
+    }
+}
+
+/// A name that may stand behind a minus.
+fn signed(name: &str) -> (bool, &str) {
+    match name.strip_prefix('-') {
+        Some(name) => (true, name),
+        None => (false, name),
     }
 }
 
@@ -188,11 +209,17 @@ pub(super) fn factors(
             named(source, found, points, &factors, &key)?;
         }
         if let Some(by) = &table.by {
-            setup_point(source, by, points, &format!("{key}.by"))?;
+            code_point(source, by, points, &format!("{key}.by"))?;
         }
-        if let Some(path) = cycle(name.as_ref(), &factors) {
-            return Err(source.error(name.span(), key, Problem::Cycle(path)));
-        }
+    }
+    if let Err(circle) = in_order(&factors) {
+        let first = circle.first().copied();
+        let way = circle.into_iter().chain(first);
+        let names: Vec<&str> = way.map(|index| factors[index].name.as_str()).collect();
+        let place = tables.keys().find(|name| name.as_ref() == names[0]);
+        let key = format!("factors.{}", names[0]);
+        let problem = Problem::Cycle(names.join(" needs "));
+        return Err(source.error(place.map_or(0..0, Spanned::span), key, problem));
     }
     Ok(factors)
 }
@@ -255,7 +282,8 @@ fn named(
     match found.as_ref() {
         OperandKey::Number(_) => Ok(()),
         OperandKey::Name(name) => {
-            let name = Spanned::new(found.span(), name.trim_start_matches('-').to_owned());
+            let (_, name) = signed(name);
+            let name = Spanned::new(found.span(), name.to_owned());
             factor_or_point(source, &name, points, factors, key)
         }
     }
@@ -290,7 +318,8 @@ fn setup_point(
     let Some(point) = points.iter().find(|point| point.name == *name.as_ref()) else {
         return Err(unknown(source, name, "point", key));
     };
-    let is_plain = point.kind.bounds().is_some()
+    let is_plain = (point.kind.is_integer()
+        || matches!(point.kind, RegisterType::Hex | RegisterType::Bits))
         && point.access.readable()
         && point.only_with.is_none()
         && point.constant_scale().is_some();
@@ -301,28 +330,19 @@ fn setup_point(
     Err(source.value(name, key, expected))
 }
 
-/// The way from a factor back to itself, `a needs b needs a`.
-fn cycle(name: &str, factors: &[Factor]) -> Option<String> {
-    // Paths of names, the shortest first; none longer than there are factors.
-    let mut paths = vec![vec![name]];
-    for _ in factors {
-        let mut longer = Vec::new();
-        for path in paths {
-            let last = path.last().copied().unwrap_or_default();
-            let factor = factors.iter().find(|factor| factor.name == last);
-            for next in factor.map(Factor::names).unwrap_or_default() {
-                if next == name {
-                    return Some([path.as_slice(), &[next]].concat().join(" needs "));
-                }
-                // Another cycle is told of by its own factors.
-                if !path.contains(&next) {
-                    longer.push([path.as_slice(), &[next]].concat());
-                }
-            }
-        }
-        paths = longer;
+/// Checks that a point can be read for the sake of another, and holds one of a few codes.
+fn code_point(
+    source: &Source<'_>,
+    name: &Spanned<String>,
+    points: &[Point],
+    key: &str,
+) -> Result<(), ProfileError> {
+    setup_point(source, name, points, key)?;
+    let point = points.iter().find(|point| point.name == *name.as_ref());
+    if point.is_some_and(|point| point.kind.registers() == 1) {
+        return Ok(());
     }
-    None
+    Err(source.value(name, key, "a point of one register"))
 }
 
 /// Checks what the scales of points refer to.
@@ -346,7 +366,7 @@ pub(super) fn references(
             named(source, high, points, factors, &key("span.high"))?;
         }
         if let Some(OnlyWithTable { point, codes }) = &row.only_with {
-            setup_point(source, point, points, &key("only_with.point"))?;
+            code_point(source, point, points, &key("only_with.point"))?;
             if codes.as_ref().is_empty() {
                 return Err(source.value(codes, &key("only_with.codes"), "a list of codes"));
             }

@@ -8,17 +8,17 @@ use crate::codec::RegisterRange;
 #[derive(Debug)]
 pub(super) struct Fence<'a> {
     /// The most registers in one read.
-    pub(super) most: u16,
+    most: u16,
     /// A read must not cross a multiple of this.
-    pub(super) table_registers: Option<u16>,
+    table_registers: Option<u16>,
     /// What a read may cover besides the registers of its points.
     holes: Holes,
     /// The registers of ordinary points.
     known: &'a Areas,
     /// What no read may touch.
-    pub(super) barriers: Areas,
+    barriers: Areas,
     /// What no read may begin or end inside of.
-    pub(super) whole: &'a Areas,
+    whole: &'a Areas,
     /// What no read may cover: where it begins, and the least end of all that begin there or later.
     refused: Vec<Stretch>,
 }
@@ -70,7 +70,6 @@ impl<'a> Fence<'a> {
         match self.holes {
             Holes::Any => true,
             Holes::Known => self.known.hold(hole),
-            Holes::None => false,
         }
     }
 

@@ -30,8 +30,6 @@ pub(super) enum Holes {
     Any,
     /// Registers of other points that can be read.
     Known,
-    /// Nothing.
-    None,
 }
 
 /// What is special about some registers of one function.
@@ -84,11 +82,6 @@ impl Rules {
         }
     }
 
-    /// Whether a read may cover registers that none of its points names.
-    pub const fn may_cross_holes(&self) -> bool {
-        !matches!(self.holes, Holes::None)
-    }
-
     /// Whether all of these registers belong to ordinary points of the profile.
     pub fn knows(&self, function: ReadFunction, range: RegisterRange) -> bool {
         self.registers(function).known.hold(stretch(range))
@@ -99,9 +92,9 @@ impl Rules {
         self.most = self.most.min(most);
     }
 
-    /// From now on no read covers registers that none of its points names.
+    /// From now on no read covers registers that no point of the profile names.
     pub const fn forbid_holes(&mut self) {
-        self.holes = Holes::None;
+        self.holes = Holes::Known;
     }
 
     /// From now on no read of several points covers all of these registers.
@@ -117,9 +110,17 @@ impl Rules {
         }
     }
 
-    /// Whether a read of several points may be one of just these registers, holes aside.
-    pub fn allow(&self, function: ReadFunction, range: RegisterRange) -> bool {
-        self.fence(function, []).allows(range)
+    /// Whether a read of several points may be one of just these registers, with these holes between
+    /// the points.
+    pub fn allow(
+        &self,
+        function: ReadFunction,
+        range: RegisterRange,
+        holes: &[RegisterRange],
+    ) -> bool {
+        let fence = self.fence(function, []);
+        let mut holes = holes.iter();
+        fence.allows(range) && holes.all(|hole| fence.allows_hole(stretch(*hole)))
     }
 
     /// What stands in the way of reads with this function, these points that must be read alone
