@@ -140,7 +140,7 @@ fn what_cannot_be_read_cannot_be_tested() {
 }
 
 #[test]
-fn each_unit_is_tested_by_itself_and_the_worst_counts() {
+fn each_unit_is_tested_by_itself_and_a_silent_one_is_missing() {
     let meter = PtyMeter::holding(&[2], &GOOD);
     let path = profile("two_units.toml", PROFILE);
     let output = Program::new("meters verify")
@@ -149,10 +149,23 @@ fn each_unit_is_tested_by_itself_and_the_worst_counts() {
         .argument(meter.path())
         .arguments("-a 2,3 -t 300ms --retries 0 -q")
         .output();
-    assert_eq!(output.status.code(), Some(4), "unit 3 is silent");
+    assert_eq!(output.status.code(), Some(1), "unit 3 is silent");
     let text = String::from_utf8(output.stdout).expect("text");
     assert!(text.starts_with("RESULT    FOUND"), "{text}");
     assert_eq!(text.matches("no value").count(), 3, "{text}");
+}
+
+#[test]
+fn a_meter_that_is_silent_altogether_ends_with_4() {
+    let meter = PtyMeter::holding(&[2], &GOOD);
+    let path = profile("silent.toml", PROFILE);
+    let output = Program::new("meters verify")
+        .argument(&path)
+        .argument("-p")
+        .argument(meter.path())
+        .arguments("-a 3 -t 300ms --retries 0 -q")
+        .output();
+    assert_eq!(output.status.code(), Some(4));
 }
 
 #[test]

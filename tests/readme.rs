@@ -109,7 +109,7 @@ fn a_meter_is_read_with_the_profile_shown() {
     }));
     let port = meter.path();
     Program::new(&format!(
-        "read-registers -p {port} -a 4 --meter mine.toml -f csv"
+        "read-registers -p {port} -t 10s -a 4 --meter mine.toml -f csv"
     ))
     .folder(with_the_profile("read"))
     .stdout(

@@ -93,6 +93,8 @@ fn what_must_hold_between_its_points_holds() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn power_of_all_phases_is_the_exact_sum(seed: u64, now in moment_of_2026()) {
         let em21 = em21(seed);

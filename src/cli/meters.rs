@@ -27,6 +27,10 @@ pub enum MetersCommand {
     /// Check profile files: whether they load, and what they may lack all the same
     Check(CheckMeters),
     /// Read a live meter and test what its profile says must hold: sums, powers, frequency
+    ///
+    /// Ends with 0 when something could be tested and all of it holds; with 1 when something fails,
+    /// is missing, or nothing flows that could be tested; with the code of the cause when nothing
+    /// could be read at all.
     Verify(Box<VerifyMeter>),
 }
 
@@ -95,10 +99,7 @@ pub struct CheckMeters {
 const VERIFY_EXAMPLES: &str = "\
 Examples:
   meterpoll meters verify pqm -p sim: -a 17
-  meterpoll meters verify ./mine.toml -p /dev/ttyUSB0 -a 1
-
-Ends with 0 when something could be tested and all of it holds, with 1 when something fails, could
-not be read, or nothing flows that could be tested.";
+  meterpoll meters verify ./mine.toml -p /dev/ttyUSB0 -a 1";
 
 /// Arguments of `meters verify`.
 #[derive(Debug, Args)]

@@ -26,7 +26,10 @@ pub use values::Units;
 /// What the program ends with, code by code.
 pub const EXIT_CODES: [(u8, &str); 10] = [
     (0, "everything asked for was done"),
-    (1, "some readings are missing"),
+    (
+        1,
+        "some readings are missing, or something that must hold does not",
+    ),
     (
         2,
         "command line or profile wrong, or refused before sending",

@@ -31,21 +31,30 @@ impl AnswerTimes {
     }
 }
 
-/// When the bytes of one exchange came.
+/// When the bytes of one exchange came; nothing once some of them were let go, for then the others
+/// cannot be counted any more.
 #[derive(Debug, Default)]
-pub(super) struct Arrivals(Vec<(usize, Duration)>);
+pub(super) struct Arrivals {
+    came: Vec<(usize, Duration)>,
+    is_useless: bool,
+}
 
 impl Arrivals {
-    /// So many more came at this time.
-    pub(super) fn note(&mut self, count: usize, at: Duration) {
-        let before = self.0.last().map_or(0, |(total, _)| *total);
-        self.0.push((before + count, at));
+    /// So many more came at this time; `is_whole` while none was let go.
+    pub(super) fn note(&mut self, count: usize, at: Duration, is_whole: bool) {
+        self.is_useless |= !is_whole;
+        if self.is_useless {
+            self.came = Vec::new();
+            return;
+        }
+        let before = self.came.last().map_or(0, |(total, _)| *total);
+        self.came.push((before + count, at));
     }
 
     /// When the byte with this index came, and how many came with it that are not before it, itself
     /// included.
     pub(super) fn of(&self, index: usize) -> Option<(Duration, usize)> {
-        let (total, at) = self.0.iter().find(|(total, _)| *total > index)?;
+        let (total, at) = self.came.iter().find(|(total, _)| *total > index)?;
         Some((*at, total - index))
     }
 }

@@ -220,7 +220,8 @@ impl Client {
             if came == 0 {
                 continue;
             }
-            arrivals.note(came, self.line.now());
+            let is_whole = received.len() <= MOST_RECEIVED;
+            arrivals.note(came, self.line.now(), is_whole);
             let verdict = expectation.judge(&received);
             forget_oldest(&mut received);
             match verdict {

@@ -125,10 +125,27 @@ fn shown(reading: &Result<Value, Fault>, decimals: usize) -> String {
         Err(_) => format!("-{}", " ".repeat(decimals)),
         Ok(value) => {
             let text = escape(&value.to_string());
-            let own = self::decimals(value).unwrap_or(decimals);
+            let Some(own) = self::decimals(value) else {
+                return folded(&text);
+            };
             format!("{text}{}", " ".repeat(decimals - own))
         }
     }
+}
+
+/// Many flags that are set, as many in a line as fit.
+fn folded(text: &str) -> String {
+    const WIDEST: usize = 40;
+    let mut lines: Vec<String> = Vec::new();
+    for flag in text.split_inclusive('|') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + flag.chars().count() <= WIDEST => {
+                line.push_str(flag);
+            }
+            _ => lines.push(flag.to_owned()),
+        }
+    }
+    lines.join("\n")
 }
 
 /// Characters of a number from its decimal mark on; `None` for text.

@@ -31,6 +31,14 @@ pub enum FindError {
         /// What the system said.
         source: io::Error,
     },
+    /// The file is in another encoding than TOML has.
+    #[error("{file}:{line}: not UTF-8, as TOML is: save the file in that encoding")]
+    NotUtf8 {
+        /// The file.
+        file: String,
+        /// The line of the first byte that is no UTF-8, from 1.
+        line: usize,
+    },
     /// One of the user's own is named otherwise than its file.
     #[error("profile {file} has name = \"{name}\", and its file says otherwise")]
     Misnamed {
@@ -71,7 +79,7 @@ impl Origin {
     /// The text it is loaded from, right or wrong.
     ///
     /// # Errors
-    /// [`FindError::Unreadable`].
+    /// [`FindError::Unreadable`] or [`FindError::NotUtf8`].
     pub fn text(&self) -> Result<Cow<'static, str>, FindError> {
         match self {
             Self::File(path) | Self::Own(path) => text(path).map(Cow::Owned),
@@ -85,7 +93,11 @@ impl Origin {
 /// # Errors
 /// [`FindError`] tells an unknown name, an unreadable file and a wrong one apart.
 pub fn find(meter: &str) -> Result<Profile, FindError> {
-    origin(meter)?.profile()
+    let origin = origin(meter)?;
+    if let Origin::File(path) | Origin::Own(path) = &origin {
+        log::info!("the profile is {}", path.display());
+    }
+    origin.profile()
 }
 
 /// Finds a profile. What looks like a path (a separator in it, or `.toml` at its end) is a file;
@@ -153,7 +165,7 @@ pub fn own(path: &Path) -> Result<Profile, FindError> {
 /// Loads a profile from a file.
 ///
 /// # Errors
-/// [`FindError::Unreadable`] or [`FindError::Invalid`].
+/// [`FindError::Unreadable`], [`FindError::NotUtf8`] or [`FindError::Invalid`].
 pub fn file(path: &Path) -> Result<Profile, FindError> {
     let text = text(path)?;
     Ok(load::load(&path.display().to_string(), &text)?)
@@ -162,11 +174,20 @@ pub fn file(path: &Path) -> Result<Profile, FindError> {
 /// Reads a profile's file.
 ///
 /// # Errors
-/// [`FindError::Unreadable`].
+/// [`FindError::Unreadable`] or [`FindError::NotUtf8`].
 pub fn text(path: &Path) -> Result<String, FindError> {
-    std::fs::read_to_string(path).map_err(|source| FindError::Unreadable {
-        file: path.display().to_string(),
+    let file = || path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|source| FindError::Unreadable {
+        file: file(),
         source,
+    })?;
+    String::from_utf8(bytes).map_err(|error| {
+        let good = error.utf8_error().valid_up_to();
+        let before = error.as_bytes().iter().take(good);
+        FindError::NotUtf8 {
+            file: file(),
+            line: before.filter(|byte| **byte == b'\n').count() + 1,
+        }
     })
 }
 

@@ -22,6 +22,8 @@ use super::point::{Names, Point};
 use crate::codec::{FunctionCode, ReadFunction, RegisterBlock, RegisterRange, UnitRange};
 use crate::transport::{LineSettings, Parity, StopBits};
 
+pub(super) use point::number as code_number;
+
 /// Loads a profile; `file` is how errors name it.
 ///
 /// # Errors

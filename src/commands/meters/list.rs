@@ -11,17 +11,18 @@ use crate::profile::{Profile, builtin, find};
 pub(super) fn run(report: &mut Report) -> Result<ExitCode, CommandError> {
     let mut lines: Vec<Vec<String>> = Vec::new();
     let mut end = ExitCode::Done;
-    for path in find::own_files() {
-        match find::own(&path) {
+    let own = find::own_files();
+    for path in &own {
+        match find::own(path) {
             Ok(profile) => lines.push(line(&profile, &path.display().to_string())),
             Err(error) => end = report.error(&error.into()),
         }
     }
     for meter in builtin::all() {
-        if !lines
+        let is_replaced = own
             .iter()
-            .any(|line| line.first().is_some_and(|name| name == meter.name))
-        {
+            .any(|path| path.file_stem().is_some_and(|name| name == meter.name));
+        if !is_replaced {
             lines.push(line(&meter.profile(), "built in"));
         }
     }

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use crate::cli::VerifyMeter;
 use crate::commands::asking::{Asking, units};
 use crate::commands::open_line::LinePlan;
-use crate::commands::report::Report;
+use crate::commands::report::{self, Report};
 use crate::commands::signals::Stop;
 use crate::commands::{CommandError, ExitCode, print};
 use crate::output::verification::Verified;
 use crate::profile::find;
 use crate::profile::identity::Outcome;
-use crate::readings::verify::{points, verify};
-use crate::readings::{Fault, Taken};
+use crate::readings::verify::{Verification, points, verify};
+use crate::readings::{Fault, Row, Taken};
 
 /// Reads the points that identities are about, and tests these.
 pub(super) fn run(arguments: &VerifyMeter, report: &mut Report) -> Result<ExitCode, CommandError> {
@@ -28,14 +28,16 @@ pub(super) fn run(arguments: &VerifyMeter, report: &mut Report) -> Result<ExitCo
     let asking = Asking::new(&line, Some(&profile), &points, function);
     let mut client = line.open()?;
     let stop = Stop::listen();
-    let mut code = Ok(ExitCode::Done);
-    for (index, unit) in units.into_iter().enumerate() {
+    let mut found = Found::default();
+    let mut result = Ok(());
+    for (index, unit) in units.iter().copied().enumerate() {
         let Taken { row, scales, .. } = asking.ask(unit, &mut client, report);
         let steps = points.iter().map(|point| point.step(&scales));
-        let readings = row.readings.iter().cloned().zip(steps);
         let named = points.iter().map(|point| point.name.clone());
-        let readings: BTreeMap<String, _> = named.zip(readings).collect();
+        let readings: BTreeMap<String, _> =
+            named.zip(row.readings.iter().cloned().zip(steps)).collect();
         let verification = verify(&profile, &readings);
+        found.add(&row, &verification);
         let verified = Verified {
             verification: &verification,
             row: &row,
@@ -43,46 +45,48 @@ pub(super) fn run(arguments: &VerifyMeter, report: &mut Report) -> Result<ExitCo
             line: (!report.is_quiet()).then_some(&*asking.line),
         };
         let between = if index > 0 { "\n" } else { "" };
-        let faults: Vec<Fault> = row.faults().collect();
-        let end = end(
-            row.readings.len() - faults.len(),
-            &faults,
-            &verification.tests,
-        );
-        code = print(format!("{between}{}", verified.text()).as_bytes())
-            .and(code)
-            .map(|worst| worse(worst, end));
-        if code.is_err() || stop.requested().is_some() || faults.contains(&Fault::Port) {
+        result = print(format!("{between}{}", verified.text()).as_bytes()).map(drop);
+        let is_lost = row.worst() == Some(Fault::Port);
+        let rest = units.len() - index - 1;
+        if is_lost && rest > 0 {
+            report::untried_units(rest);
+        }
+        if result.is_err() || is_lost || stop.requested().is_some() {
             break;
         }
     }
     let _ = client.finish();
-    code.map(|code| stop.requested().unwrap_or(code))
+    result.map(|()| stop.requested().unwrap_or_else(|| found.code()))
 }
 
-/// What one unit comes to: done when something holds, nothing fails and no reading was lost.
-fn end<T>(delivered: usize, faults: &[Fault], tests: &[(T, Outcome)]) -> ExitCode {
-    if delivered == 0 {
-        return ExitCode::of(delivered, faults);
-    }
-    let holds = tests
-        .iter()
-        .any(|(_, outcome)| matches!(outcome, Outcome::Holds { .. }));
-    let fails = tests
-        .iter()
-        .any(|(_, outcome)| matches!(outcome, Outcome::Fails { .. }));
-    let is_lost = |fault: &Fault| !matches!(fault, Fault::Absent | Fault::Overflow);
-    if holds && !fails && !faults.iter().any(is_lost) {
-        ExitCode::Done
-    } else {
-        ExitCode::SomeMissing
-    }
+/// What all units come to.
+#[derive(Default)]
+struct Found {
+    delivered: usize,
+    faults: Vec<Fault>,
+    holds: bool,
+    fails: bool,
 }
 
-/// What two units come to.
-const fn worse(one: ExitCode, other: ExitCode) -> ExitCode {
-    match (one, other) {
-        (ExitCode::Done, other) => other,
-        (one, _) => one,
+impl Found {
+    fn add(&mut self, row: &Row, verification: &Verification<'_>) {
+        let outcomes = || verification.tests.iter().map(|(_, outcome)| outcome);
+        self.delivered += row.readings.len() - row.faults().count();
+        self.faults.extend(row.faults());
+        self.holds |= outcomes().any(|outcome| matches!(outcome, Outcome::Holds { .. }));
+        self.fails |= outcomes().any(|outcome| matches!(outcome, Outcome::Fails { .. }));
+    }
+
+    /// Done when something holds, nothing fails and no reading was lost.
+    fn code(&self) -> ExitCode {
+        // What the meter says it does not have is not lost.
+        let is_lost = |fault: &Fault| !matches!(fault, Fault::Absent | Fault::Overflow);
+        if self.delivered > 0 && !self.faults.iter().any(is_lost) && self.holds && !self.fails {
+            return ExitCode::Done;
+        }
+        match ExitCode::of(self.delivered, &self.faults) {
+            ExitCode::Done => ExitCode::SomeMissing,
+            code => code,
+        }
     }
 }

@@ -15,7 +15,7 @@ use crate::profile::model::{Identification, Limits};
 pub(super) fn head(profile: &Profile) -> String {
     let mut sheet = Sheet::default();
     sheet.text("manual", &profile.manual);
-    sheet.text("line", &format!("{} from the factory", profile.line));
+    sheet.text("line", &format!("{} unless told otherwise", profile.line));
     limits(&mut sheet, &profile.limits);
     match &profile.identification {
         None => sheet.text("recognised", "by no register"),

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::{Matter, Review, Row};
 use crate::codec::value::RegisterType;
 use crate::profile::format::{LabelTable, LabelsKey};
+use crate::profile::load::code_number;
 
 impl Review<'_> {
     pub(super) fn tables(&mut self) {
@@ -37,12 +38,8 @@ impl Review<'_> {
     /// Names for more than one bit; 0 is that of none at all.
     fn bits(&mut self, table: &LabelTable, key: &str) {
         for code in table.keys() {
-            let written = code.as_ref();
-            let mask = match written.strip_prefix("0x") {
-                Some(hex) => u16::from_str_radix(hex, 16),
-                None => written.parse(),
-            };
-            if let Some(mask) = mask.ok().filter(|mask| mask.count_ones() > 1) {
+            let mask = code_number(code.as_ref());
+            if let Some(mask) = mask.filter(|mask| mask.count_ones() > 1) {
                 self.tell(&code.span(), key, Matter::ManyBits { mask });
             }
         }

@@ -296,10 +296,14 @@ pub(super) fn code(
     written: &Spanned<String>,
     key: &str,
 ) -> Result<u16, ProfileError> {
-    let text = written.as_ref();
-    let number = match text.strip_prefix("0x") {
-        Some(hex) => u16::from_str_radix(hex, 16),
-        None => text.parse(),
-    };
-    number.map_err(|_| source.value(written, key, "a code: 0 to 65535, or 0x0 to 0xFFFF"))
+    let expected = "a code: 0 to 65535, or 0x0 to 0xFFFF";
+    number(written.as_ref()).ok_or_else(|| source.value(written, key, expected))
+}
+
+/// The number that a code stands for.
+pub(in crate::profile) fn number(code: &str) -> Option<u16> {
+    match code.strip_prefix("0x") {
+        Some(hex) => u16::from_str_radix(hex, 16).ok(),
+        None => code.parse().ok(),
+    }
 }
