@@ -89,7 +89,8 @@ pub(super) fn needed<'a>(point: &'a Point, factors: &'a [Factor]) -> BTreeSet<&'
     while let Some(name) = open.pop() {
         match factors.iter().find(|factor| factor.name == name) {
             Some(factor) => {
-                open.extend(factor.names().into_iter().filter(|name| seen.insert(name)))
+                let names = factor.names().into_iter();
+                open.extend(names.filter(|name| seen.insert(name)));
             }
             None => {
                 points.insert(name);
