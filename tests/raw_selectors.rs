@@ -324,3 +324,28 @@ fn a_factor_that_would_be_rounded_is_none() {
         format!("'0x10*{factor}': '{factor}' is no factor, such as 0.1")
     );
 }
+
+#[test]
+fn a_run_of_registers_over_one_that_is_read_alone_is_refused() {
+    let em24 = meterpoll::profile::builtin::find("em24")
+        .expect("it is built in")
+        .profile();
+    let reading = Reading {
+        profile: Some(&em24),
+        ..Reading::default()
+    };
+    let selected = |selector: &str| select(&[selector.to_owned()], reading);
+    for (selector, name) in [
+        ("0x000A+3", "identification_code"),
+        ("0x302+2", "firmware_version_code"),
+    ] {
+        let error = selected(selector).expect_err("it is not clear what is meant");
+        let message = format!(
+            "'{selector}': the meter's {name} lies there, which is read by a request of its own"
+        );
+        assert_eq!(error.to_string(), message);
+    }
+    for clear in ["0x000B", "0x000A:i32/CDAB", "0+10", "0x000A"] {
+        assert!(selected(clear).is_ok(), "{clear}");
+    }
+}

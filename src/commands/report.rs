@@ -197,6 +197,10 @@ fn select_hint(error: &SelectError) -> Option<String> {
                 groups.join(", ")
             ));
         }
+        SelectError::Lonely { .. } => {
+            "ask for its register by itself, and for those before and behind it apart; points by \
+             name need no such care"
+        }
         SelectError::PointForm { .. } => "type, factor and unit are for registers by address",
         SelectError::FunctionClash { .. } => "leave --function out: 3xxxx is 4, 4xxxx is 3",
         SelectError::NoPoint { .. } => {

@@ -72,6 +72,15 @@ pub enum SelectError {
         /// The point.
         name: String,
     },
+    /// Registers in a row, one of which must be read by a request of its own or means something else
+    /// then: it is not clear what was meant.
+    #[error("'{selector}': the meter's {name} lies there, which is read by a request of its own")]
+    Lonely {
+        /// What was typed.
+        selector: String,
+        /// The point.
+        name: String,
+    },
     /// A group that the meter does not have.
     #[error("{meter} has no group '@{name}'; its groups are {}", .known.join(", "))]
     UnknownGroup {

@@ -62,7 +62,7 @@ pub(super) fn registers(selector: &str, reading: Reading<'_>) -> Result<Vec<Poin
             count: total,
         }));
     }
-    (0..total / width)
+    let points: Vec<Point> = (0..total / width)
         .map(|index| {
             let range = RegisterRange::new(start + index * width, width).map_err(address)?;
             Ok(Point {
@@ -72,7 +72,25 @@ pub(super) fn registers(selector: &str, reading: Reading<'_>) -> Result<Vec<Poin
                 ..Point::raw(range, kind, order)
             })
         })
-        .collect()
+        .collect::<Result<_, SelectError>>()?;
+    match lonely(&points, reading) {
+        Some(name) => Err(SelectError::Lonely {
+            selector: selector.to_owned(),
+            name: name.to_owned(),
+        }),
+        None => Ok(points),
+    }
+}
+
+/// The point of the meter that must be read alone, or means something else then, and lies among
+/// these when there are several.
+fn lonely<'a>(points: &[Point], reading: Reading<'a>) -> Option<&'a str> {
+    let [_, _, ..] = points else {
+        return None;
+    };
+    let mut apart = reading.profile?.points.iter().filter(|point| point.alone);
+    let is_among = |apart: &&Point| points.iter().any(|raw| apart.range.contains(raw.range));
+    apart.find(is_among).map(|point| point.name.as_str())
 }
 
 /// The part before `mark`, and the part after it if there is one.
