@@ -179,6 +179,12 @@ fn what_a_point_means_something_with_is_another_point() {
         "m.toml:10: a.only_with.point: there is no point 'wiring'",
     );
     refused(
+        &point("u16", "only_with = { point = \"order\" }"),
+        "m.toml:10: a.only_with.point: \"order\" is not a point that can be read and depends on no \
+         other",
+    );
+    assert!(load("m.toml", &point("u16", "only_with = { point = \"ct\" }")).is_ok());
+    refused(
         &point("u16", "only_with = { point = \"ct\", codes = [] }"),
         "m.toml:10: a.only_with.codes: [] is not a list of codes",
     );

@@ -51,7 +51,8 @@ fn row(point: &Point) -> String {
         .to_owned(),
         if point.alone { "alone" } else { "" }.to_owned(),
         point.only_with.as_ref().map_or_else(String::new, |with| {
-            let codes: Vec<String> = with.codes.iter().map(u16::to_string).collect();
+            let codes = with.codes.iter().flatten();
+            let codes: Vec<String> = codes.map(u16::to_string).collect();
             format!("{}={}", with.point, codes.join(" "))
         }),
         if point.verified { "yes" } else { "no" }.to_owned(),

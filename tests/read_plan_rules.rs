@@ -44,7 +44,7 @@ points = [
 
 /// Start and count of each read of what is selected, at 9600 8N1.
 fn reads(profile: &Profile, rules: &Rules, what: &str) -> Vec<(u16, u16)> {
-    let selectors: Vec<String> = what.split(' ').map(str::to_owned).collect();
+    let selectors: Vec<String> = what.split(' ').flat_map(one_by_one).collect();
     let reading = Reading {
         profile: Some(profile),
         ..Reading::default()
@@ -54,6 +54,23 @@ fn reads(profile: &Profile, rules: &Rules, what: &str) -> Vec<(u16, u16)> {
     let reads = Plan::new(&points, HOLDING, rules, cost).reads.into_iter();
     reads
         .map(|read| (read.range.start().get(), read.range.count()))
+        .collect()
+}
+
+/// Registers in a row as so many selectors: together they would be refused over a point that is read
+/// alone.
+fn one_by_one(selector: &str) -> Vec<String> {
+    let Some((start, count)) = selector.split_once('+') else {
+        return vec![selector.to_owned()];
+    };
+    let start = match start.strip_prefix("0x") {
+        Some(hex) => u16::from_str_radix(hex, 16),
+        None => start.parse(),
+    };
+    let start = start.expect("an address");
+    let count: u16 = count.parse().expect("a count");
+    (start..start + count)
+        .map(|address| address.to_string())
         .collect()
 }
 

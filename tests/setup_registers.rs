@@ -113,8 +113,8 @@ fn setup_that_cannot_be_is_told_and_scales_nothing() {
              <time>,pm290,1,mismatch,,50.0005\n",
         )
         .stderr(format!(
-            "error: unit 1 on {} at 9600 8N1, pt_ratio: registers 0000 hold no such setting; what \
-             is scaled by it is missing\n\
+            "error: unit 1 on {} at 9600 8N1, pt_ratio: registers 0000 hold no such value; what \
+             depends on it is missing\n\
              hint: check the setup on the meter itself, and that it is the meter of --meter\n",
             meter.path()
         ))
@@ -173,4 +173,24 @@ fn the_plan_says_what_is_read_besides() {
              read besides, for the scales: pt_ratio\n",
         )
         .run();
+}
+
+#[test]
+fn the_time_of_a_stamp_that_was_never_set_is_absent() {
+    // Lowest phase A current: time, then date.
+    let never = [(0x0250, 0), (0x0251, 0), (0x0252, 0), (0x0253, 0)];
+    let once = [(0x0250, 0), (0x0251, 0), (0x0252, 0x0A1D), (0x0253, 1997)];
+    for (registers, code, expected) in [(never, 1, "absent,"), (once, 0, "ok,00:00:00.000")] {
+        let meter = PtyMeter::holding(&[1], &registers);
+        Program::new(&format!(
+            "read-registers -p {} -t 10s --meter pqm -f csv -a 1 current_a_min_time",
+            meter.path()
+        ))
+        .code(code)
+        .stdout(format!(
+            "time,meter,unit_id,status,current_a_min_time\n<time>,pqm,1,{expected}\n"
+        ))
+        .run();
+        assert_eq!(asked(&meter), [(1, 0x0250, 4)]);
+    }
 }

@@ -77,7 +77,8 @@ fn every_point_of_the_profile_reads_as_what_the_model_measures() {
         };
         assert_eq!(Some(&registers), expected.as_ref(), "{}", point.name);
         assert!(
-            point.interpret(&registers, &Scales::default()).is_ok(),
+            // What depends on another point is not to be had without it.
+            point.only_with.is_some() || point.interpret(&registers, &Scales::default()).is_ok(),
             "{}",
             point.name
         );

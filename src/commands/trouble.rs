@@ -69,7 +69,7 @@ pub(super) fn text(place: &Place<'_>, trouble: &Trouble) -> String {
         Trouble::NoSetting { point, registers } => {
             let words = words(registers);
             format!(
-                "{at}, {point}: registers {words} hold no such setting; what is scaled by it is missing"
+                "{at}, {point}: registers {words} hold no such value; what depends on it is missing"
             )
         }
         Trouble::NoScale { point, factor } => {

@@ -81,7 +81,8 @@
 //! address = 0x1002
 //! type = "u16"
 //! span = { full = 9999, low = "-full_scale", high = "full_scale" }  # raw 0 is low, 9999 is high
-//! only_with = { point = "backlight", codes = [1] }  # means nothing when it holds anything else
+//! only_with = { point = "backlight", codes = [1] }  # means nothing when it holds anything else;
+//!                               # without codes: when that point has no value
 //!
 //! [[points]]
 //! name = "user_register"
@@ -243,7 +244,7 @@ pub struct BandTable {
 #[serde(deny_unknown_fields)]
 pub struct OnlyWithTable {
     pub(super) point: Spanned<String>,
-    pub(super) codes: Spanned<Vec<u16>>,
+    pub(super) codes: Option<Spanned<Vec<u16>>>,
 }
 
 /// One of `[factors]`: a product, or a choice by a point.

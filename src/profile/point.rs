@@ -107,18 +107,22 @@ pub enum Marker {
     Raw(i128),
 }
 
-/// The setup that a point means anything with: a point of one register that holds one of these.
+/// What a point means anything with: another one that holds one of these, or any value at all.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OnlyWith {
     /// The name of the other point.
     pub point: String,
-    /// Its raw numbers.
-    pub codes: Vec<u16>,
+    /// The raw numbers of its one register; `None` when any value will do.
+    pub codes: Option<Vec<u16>>,
 }
 
 impl OnlyWith {
-    fn means_something(&self, setting: i128) -> bool {
-        self.codes.iter().any(|code| i128::from(*code) == setting)
+    /// Whether what the other point holds will do; `None` is a value that is no number.
+    fn means_something(&self, setting: Option<i128>) -> bool {
+        let Some(codes) = &self.codes else {
+            return true;
+        };
+        codes.iter().any(|code| setting == Some(i128::from(*code)))
     }
 }
 

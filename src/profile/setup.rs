@@ -67,8 +67,9 @@ impl Setup {
                 None => Err(Missing::Mismatch),
             };
             let number = raw.and_then(|raw| {
-                let scale = point.constant_scale().ok_or(Missing::Mismatch)?;
-                times(raw, 0, scale).ok_or(Missing::Mismatch)
+                let number = raw.zip(point.constant_scale());
+                let number = number.and_then(|(raw, scale)| times(raw, 0, scale));
+                number.ok_or(Missing::Mismatch)
             });
             scales.settings.insert(point.name.clone(), raw);
             scales.numbers.insert(point.name.clone(), number);
@@ -101,16 +102,16 @@ pub(super) fn needed<'a>(point: &'a Point, factors: &'a [Factor]) -> BTreeSet<&'
 }
 
 /// The raw number of a setup point, which must be one that could have been written there: a
-/// transformer ratio of 0 would make every reading 0.
-fn setting(point: &Point, registers: &[u16]) -> Result<i128, Missing> {
+/// transformer ratio of 0 would make every reading 0. `None` where it is no number, a date say.
+fn setting(point: &Point, registers: &[u16]) -> Result<Option<i128>, Missing> {
     let raw = match point.raw_value(registers)? {
         Raw::Integer(number) => number,
         Raw::Word(word) => word.into(),
-        _ => return Err(Missing::Mismatch),
+        _ => return Ok(None),
     };
     match point.limits {
         Some((lowest, highest)) if !(lowest..=highest).contains(&raw) => Err(Missing::Mismatch),
-        _ => Ok(raw),
+        _ => Ok(Some(raw)),
     }
 }
 
@@ -118,17 +119,17 @@ fn setting(point: &Point, registers: &[u16]) -> Result<i128, Missing> {
 #[derive(Debug, Clone, Default)]
 pub struct Scales {
     /// The raw numbers of setup points.
-    settings: BTreeMap<String, Result<i128, Missing>>,
+    settings: BTreeMap<String, Result<Option<i128>, Missing>>,
     /// The numbers of setup points and factors.
     numbers: BTreeMap<String, Result<Decimal, Missing>>,
 }
 
 impl Scales {
-    /// Whether a setup point holds a setting.
+    /// The raw number that a setup point holds; `None` for a value that is no number.
     ///
     /// # Errors
     /// Why it holds none; [`Missing::Mismatch`] too when it was not read.
-    pub fn setting(&self, name: &str) -> Result<i128, Missing> {
+    pub fn setting(&self, name: &str) -> Result<Option<i128>, Missing> {
         let setting = self.settings.get(name).copied();
         setting.unwrap_or(Err(Missing::Mismatch))
     }
@@ -181,8 +182,9 @@ impl Scales {
                 cases,
                 otherwise,
             } => {
-                let code = u16::try_from(self.setting(by)?).map_err(|_| Missing::Mismatch)?;
-                let chosen = cases.get(&code).or(otherwise.as_ref());
+                let code = self.setting(by)?.and_then(|code| u16::try_from(code).ok());
+                let case = code.and_then(|code| cases.get(&code));
+                let chosen = case.or(otherwise.as_ref());
                 self.operand(chosen.ok_or(Missing::Mismatch)?)
             }
         }

@@ -111,18 +111,19 @@ fn limits(profile: &Profile) -> LimitsObject {
     }
 }
 
-/// A point that holds one of a few codes.
+/// A point that holds one of a few codes, or any value.
 #[derive(Serialize)]
 struct CodesObject<'a> {
     point: &'a str,
-    codes: &'a [u16],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    codes: Option<&'a [u16]>,
 }
 
 fn identification(profile: &Profile) -> Option<CodesObject<'_>> {
     let known = profile.identification.as_ref()?;
     Some(CodesObject {
         point: &known.point,
-        codes: &known.codes,
+        codes: Some(&known.codes),
     })
 }
 

@@ -64,9 +64,12 @@ pub(super) const fn meaning(no_value: &NoValue) -> &'static str {
     }
 }
 
-/// The setup that a point needs, `wiring = 0, 3`.
+/// What a point means something with: `wiring = 0, 3`, or a point that has a value.
 pub(super) fn setup(with: &OnlyWith) -> String {
-    let codes: Vec<String> = with.codes.iter().map(u16::to_string).collect();
+    let Some(codes) = &with.codes else {
+        return with.point.clone();
+    };
+    let codes: Vec<String> = codes.iter().map(u16::to_string).collect();
     format!("{} = {}", with.point, codes.join(", "))
 }
 

@@ -88,7 +88,7 @@ fn point(
             .transpose()?,
         only_with: row.only_with.as_ref().map(|with| OnlyWith {
             point: with.point.as_ref().clone(),
-            codes: with.codes.as_ref().clone(),
+            codes: with.codes.as_ref().map(|codes| codes.as_ref().clone()),
         }),
         alone: row.alone,
         function: row

@@ -330,6 +330,26 @@ fn setup_point(
     Err(source.value(name, key, expected))
 }
 
+/// Checks that a point can be read for the sake of another, and depends on none itself.
+fn plain_point(
+    source: &Source<'_>,
+    name: &Spanned<String>,
+    points: &[Point],
+    key: &str,
+) -> Result<(), ProfileError> {
+    let Some(point) = points.iter().find(|point| point.name == *name.as_ref()) else {
+        return Err(unknown(source, name, "point", key));
+    };
+    if point.access.readable() && point.only_with.is_none() {
+        return Ok(());
+    }
+    Err(source.value(
+        name,
+        key,
+        "a point that can be read and depends on no other",
+    ))
+}
+
 /// Checks that a point can be read for the sake of another, and holds one of a few codes.
 fn code_point(
     source: &Source<'_>,
@@ -366,9 +386,13 @@ pub(super) fn references(
             named(source, high, points, factors, &key("span.high"))?;
         }
         if let Some(OnlyWithTable { point, codes }) = &row.only_with {
-            code_point(source, point, points, &key("only_with.point"))?;
-            if codes.as_ref().is_empty() {
-                return Err(source.value(codes, &key("only_with.codes"), "a list of codes"));
+            let key = |part: &str| key(&format!("only_with.{part}"));
+            match codes {
+                None => plain_point(source, point, points, &key("point"))?,
+                Some(codes) if codes.as_ref().is_empty() => {
+                    return Err(source.value(codes, &key("codes"), "a list of codes"));
+                }
+                Some(_) => code_point(source, point, points, &key("point"))?,
             }
         }
     }

@@ -93,7 +93,7 @@ pub(super) fn point(point: &Point) -> PointObject<'_> {
         no_value: point.no_value.as_ref().map(marker),
         only_with: point.only_with.as_ref().map(|with| CodesObject {
             point: &with.point,
-            codes: &with.codes,
+            codes: with.codes.as_deref(),
         }),
         alone: point.alone,
         function: terms::function(point),
