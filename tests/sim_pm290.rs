@@ -218,7 +218,7 @@ fn what_is_beyond_the_scale_shows_as_its_end() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(48) })]
 
     #[test]
     fn total_power_is_the_exact_sum_of_the_phases(
