@@ -89,7 +89,9 @@ fn a_meter_of_11_registers_is_read_without_a_word() {
 #[test]
 fn a_meter_that_is_silent_on_more_than_11_registers_is_read_without_a_word() {
     let meter = meter(|_, _, count| if count > 11 { Err(None) } else { Ok(()) });
-    read(&meter, "-a 1 -t 1500ms 0+24").stdout(csv(&[1], 24)).run();
+    read(&meter, "-a 1 -t 1500ms 0+24")
+        .stdout(csv(&[1], 24))
+        .run();
     let expected = [(0, 24), (0, 1), (1, 11), (12, 12), (12, 6), (18, 6)];
     assert_eq!(
         requests(&meter),

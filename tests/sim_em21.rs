@@ -93,7 +93,7 @@ fn what_must_hold_between_its_points_holds() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
 
     #[test]
     fn power_of_all_phases_is_the_exact_sum(seed: u64, now in moment_of_2026()) {

@@ -106,7 +106,7 @@ fn what_must_hold_between_its_points_holds() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
 
     #[test]
     fn power_of_all_phases_is_the_exact_sum(seed: u64, now in moment_of_2026()) {
@@ -148,7 +148,7 @@ proptest! {
 
 proptest! {
     // Each of these works through a week of every seed.
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(12) })]
 
     #[test]
     fn energy_is_the_exact_sum_of_its_phases_and_of_its_tariffs(

@@ -82,7 +82,7 @@ const COUNTERS: [&str; 9] = [
 ];
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
 
     #[test]
     fn three_phase_power_is_the_exact_sum_of_the_phases(seed: u64, now in moment_of_2026()) {
@@ -173,7 +173,7 @@ proptest! {
 
 proptest! {
     // Each of these works through a week of every seed.
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(24) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(12) })]
 
     #[test]
     fn values_lie_between_their_minimum_and_maximum(seed: u64, now in moment_of_2026()) {
