@@ -209,7 +209,12 @@ pub(super) fn factors(
             named(source, found, points, &factors, &key)?;
         }
         if let Some(by) = &table.by {
-            code_point(source, by, points, &format!("{key}.by"))?;
+            let key = format!("{key}.by");
+            code_point(
+                source,
+                &named_point(source, by, points, "point", &key)?,
+                &key,
+            )?;
         }
     }
     if let Err(circle) = in_order(&factors) {
@@ -302,67 +307,64 @@ fn factor_or_point(
     if name.as_ref().parse::<f64>().is_ok() {
         return Err(source.value(name, key, "a number, without quotes, or a name"));
     }
-    if points.iter().all(|point| point.name != *name.as_ref()) {
-        return Err(unknown(source, name, "factor or point", key));
-    }
-    setup_point(source, name, points, key)
+    number_point(
+        source,
+        &named_point(source, name, points, "factor or point", key)?,
+        key,
+    )
 }
 
-/// Checks that a point can be read for the sake of another, by itself.
-fn setup_point(
+/// A point by its name, and where that stands.
+struct NamedPoint<'a> {
+    name: &'a Spanned<String>,
+    point: &'a Point,
+}
+
+fn named_point<'a>(
     source: &Source<'_>,
-    name: &Spanned<String>,
-    points: &[Point],
+    name: &'a Spanned<String>,
+    points: &'a [Point],
+    what: &'static str,
+    key: &str,
+) -> Result<NamedPoint<'a>, ProfileError> {
+    let point = points.iter().find(|point| point.name == *name.as_ref());
+    let point = point.ok_or_else(|| unknown(source, name, what, key))?;
+    Ok(NamedPoint { name, point })
+}
+
+/// Checks that a point can be read for the sake of another, and depends on none itself.
+fn plain_point(source: &Source<'_>, found: &NamedPoint<'_>, key: &str) -> Result<(), ProfileError> {
+    if found.point.access.readable() && found.point.only_with.is_none() {
+        return Ok(());
+    }
+    let expected = "a point that can be read and depends on no other";
+    Err(source.value(found.name, key, expected))
+}
+
+/// Checks that a point can be read for the sake of another, and that a number comes of it.
+fn number_point(
+    source: &Source<'_>,
+    found: &NamedPoint<'_>,
     key: &str,
 ) -> Result<(), ProfileError> {
-    let Some(point) = points.iter().find(|point| point.name == *name.as_ref()) else {
-        return Err(unknown(source, name, "point", key));
-    };
-    let is_plain = (point.kind.is_integer()
-        || matches!(point.kind, RegisterType::Hex | RegisterType::Bits))
-        && point.access.readable()
-        && point.only_with.is_none()
-        && point.constant_scale().is_some();
-    if is_plain {
+    let NamedPoint { name, point } = found;
+    let is_whole =
+        point.kind.is_integer() || matches!(point.kind, RegisterType::Hex | RegisterType::Bits);
+    let is_readable = point.access.readable() && point.only_with.is_none();
+    if is_whole && is_readable && point.constant_scale().is_some() {
         return Ok(());
     }
     let expected = "an integer that can be read and whose scale is a number";
     Err(source.value(name, key, expected))
 }
 
-/// Checks that a point can be read for the sake of another, and depends on none itself.
-fn plain_point(
-    source: &Source<'_>,
-    name: &Spanned<String>,
-    points: &[Point],
-    key: &str,
-) -> Result<(), ProfileError> {
-    let Some(point) = points.iter().find(|point| point.name == *name.as_ref()) else {
-        return Err(unknown(source, name, "point", key));
-    };
-    if point.access.readable() && point.only_with.is_none() {
-        return Ok(());
-    }
-    Err(source.value(
-        name,
-        key,
-        "a point that can be read and depends on no other",
-    ))
-}
-
 /// Checks that a point can be read for the sake of another, and holds one of a few codes.
-fn code_point(
-    source: &Source<'_>,
-    name: &Spanned<String>,
-    points: &[Point],
-    key: &str,
-) -> Result<(), ProfileError> {
-    setup_point(source, name, points, key)?;
-    let point = points.iter().find(|point| point.name == *name.as_ref());
-    if point.is_some_and(|point| point.kind.registers() == 1) {
+fn code_point(source: &Source<'_>, found: &NamedPoint<'_>, key: &str) -> Result<(), ProfileError> {
+    number_point(source, found, key)?;
+    if found.point.kind.registers() == 1 {
         return Ok(());
     }
-    Err(source.value(name, key, "a point of one register"))
+    Err(source.value(found.name, key, "a point of one register"))
 }
 
 /// Checks what the scales of points refer to.
@@ -387,12 +389,14 @@ pub(super) fn references(
         }
         if let Some(OnlyWithTable { point, codes }) = &row.only_with {
             let key = |part: &str| key(&format!("only_with.{part}"));
+            let at = key("point");
+            let found = named_point(source, point, points, "point", &at)?;
             match codes {
-                None => plain_point(source, point, points, &key("point"))?,
+                None => plain_point(source, &found, &at)?,
                 Some(codes) if codes.as_ref().is_empty() => {
                     return Err(source.value(codes, &key("codes"), "a list of codes"));
                 }
-                Some(_) => code_point(source, point, points, &key("point"))?,
+                Some(_) => code_point(source, &found, &at)?,
             }
         }
     }
