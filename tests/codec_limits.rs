@@ -334,3 +334,14 @@ fn function_08_is_spoken_with_sub_function_0_only() {
         assert_eq!(reply(&[8, high, low, 0, 0]), error);
     }
 }
+
+#[test]
+fn ranges_overlap_when_they_share_a_register() {
+    let range = |start, count| RegisterRange::new(start, count).expect("a range");
+    assert!(range(10, 2).overlaps(range(11, 5)));
+    assert!(range(11, 5).overlaps(range(10, 2)));
+    assert!(range(10, 9).overlaps(range(12, 1)));
+    assert!(!range(10, 2).overlaps(range(12, 1)));
+    assert!(!range(12, 1).overlaps(range(10, 2)));
+    assert!(range(0xFFFF, 1).overlaps(range(0xFFF0, 16)));
+}

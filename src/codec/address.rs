@@ -159,6 +159,11 @@ impl RegisterRange {
         self.start.0 as u32 + self.count as u32
     }
 
+    /// Whether a register of `other` is one of these.
+    pub const fn overlaps(self, other: Self) -> bool {
+        (self.start.0 as u32) < other.end() && (other.start.0 as u32) < self.end()
+    }
+
     /// Whether every register of `other` is one of these.
     pub const fn contains(self, other: Self) -> bool {
         self.start.0 <= other.start.0 && other.end() <= self.end()

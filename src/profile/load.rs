@@ -359,7 +359,7 @@ fn overlaps(
             continue;
         };
         let (other, other_span) = furthest[at];
-        if u32::from(point.range.start().get()) < other.range.end() {
+        if point.range.overlaps(other.range) {
             let problem = Problem::Overlap {
                 range: point.range.to_string(),
                 other: other.name.clone(),

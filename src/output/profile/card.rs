@@ -74,11 +74,10 @@ fn registers(profile: &Profile, point: &Point) -> String {
     if point.alone {
         text.push_str(", read by a request of its own");
     }
-    let others = profile.points.iter().filter(|other| {
-        other.name != point.name
-            && u32::from(other.range.start().get()) < point.range.end()
-            && u32::from(point.range.start().get()) < other.range.end()
-    });
+    let others = profile
+        .points
+        .iter()
+        .filter(|other| other.name != point.name && other.range.overlaps(point.range));
     for other in others {
         text = format!("{text}; {} lies there as well", other.name);
     }

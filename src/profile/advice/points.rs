@@ -19,8 +19,7 @@ impl Review<'_> {
         for (index, point) in points.iter().enumerate() {
             // By address: as long as one begins before this one ends, it shares registers with it.
             let behind = points[index + 1..].iter();
-            let sharing =
-                behind.take_while(|other| u32::from(other.range.start().get()) < point.range.end());
+            let sharing = behind.take_while(|other| other.range.overlaps(point.range));
             for other in sharing {
                 let rows = [point, other].map(|point| self.row_of.get(point.name.as_str()));
                 if let [Some(one), Some(two)] = rows {

@@ -43,7 +43,7 @@ impl Kind {
         let readable = self.profile.points.iter().filter(|point| {
             point.access.readable()
                 && point.function.is_none_or(|only| only == function)
-                && overlap(point.range, range)
+                && point.range.overlaps(range)
         });
         let (alone, ordinary): (Vec<&Point>, Vec<&Point>) = readable.partition(|point| point.alone);
         if let Some(point) = alone.iter().find(|point| point.range == range) {
@@ -74,10 +74,6 @@ impl Kind {
         };
         table(range.start().get().into()) == table(range.end() - 1)
     }
-}
-
-fn overlap(one: RegisterRange, other: RegisterRange) -> bool {
-    u32::from(one.start().get()) < other.end() && u32::from(other.start().get()) < one.end()
 }
 
 /// Whether each of these registers belongs to one of the points.
