@@ -170,7 +170,7 @@ fn the_plan_says_what_is_read_besides() {
              one request a point         2  45.8\n\
              \n\
              at 9600 8N1, if the meter begins to answer after 0 ms\n\
-             read besides, for the scales: pt_ratio\n",
+             read besides, for others depend on it: pt_ratio\n",
         )
         .run();
 }

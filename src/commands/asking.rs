@@ -25,7 +25,7 @@ pub(super) struct Asking<'a> {
     pub(super) meter: &'a str,
     /// What is read.
     pub(super) points: &'a [Point],
-    /// What their scales depend on.
+    /// What they depend on.
     pub(super) setup: Setup,
     function: ReadFunction,
     rules: Rules,

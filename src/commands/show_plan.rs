@@ -18,7 +18,7 @@ pub(super) struct ShownPlan<'a> {
     pub(super) units: &'a [Unit],
     /// What is read.
     pub(super) points: &'a [Point],
-    /// Those of it that nobody asked for, and that scales depend on.
+    /// Those of it that nobody asked for, and that the others depend on.
     pub(super) besides: &'a [Point],
     pub(super) plan: &'a Plan,
     pub(super) settings: LineSettings,
@@ -90,7 +90,11 @@ impl fmt::Display for ShownPlan<'_> {
         writeln!(f)?;
         if !self.besides.is_empty() {
             let names: Vec<&str> = self.besides.iter().map(|point| &*point.name).collect();
-            writeln!(f, "read besides, for the scales: {}", names.join(", "))?;
+            writeln!(
+                f,
+                "read besides, for others depend on it: {}",
+                names.join(", ")
+            )?;
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use rust_decimal::Decimal;
 use rust_decimal::prelude::ToPrimitive;
 use serde::{Deserialize, Serialize};
 
-use super::scaling::{Band, Scaling, times, within};
+use super::scaling::{Band, Scaling, span_step, times, within};
 use super::setup::Scales;
 use super::value::{Missing, Value};
 use crate::codec::value::{self, ByteOrder, Raw, RegisterType, ValueError};
@@ -32,7 +32,8 @@ pub struct Point {
     pub unit: Option<String>,
     /// Whether it can be read and written.
     pub access: Access,
-    /// Lowest and highest raw integer that may be written.
+    /// Lowest and highest raw integer that may be written; what else a setup point holds is no
+    /// setting, and nothing is scaled by it.
     pub limits: Option<(i128, i128)>,
     /// Names of codes or of bits.
     #[serde(skip)]
@@ -164,13 +165,12 @@ impl Point {
         let step = match (&self.scaling, self.kind.is_integer()) {
             (_, false) => None,
             (Scaling::Times(scale), true) => Some(*scale),
-            (Scaling::TimesFactor(name), true) => scales.named(name).ok(),
+            (Scaling::TimesFactor(name), true) => scales.step(name).ok(),
             (Scaling::TimesByRaw(bands), true) => bands.iter().map(|band| band.factor.abs()).max(),
-            (Scaling::Span { full, low, high }, true) => scales
-                .operand(high)
-                .ok()
-                .zip(scales.operand(low).ok())
-                .and_then(|(high, low)| high.checked_sub(low)?.checked_div((*full).into())),
+            (Scaling::Span { full, low, high }, true) => {
+                let ends = scales.operand(low).ok().zip(scales.operand(high).ok());
+                ends.and_then(|(low, high)| span_step(*full, low, high))
+            }
         };
         step.and_then(|step| step.abs().to_f64())
             .unwrap_or_default()
@@ -235,11 +235,7 @@ impl Point {
         }
         let factor = match &self.scaling {
             Scaling::Times(scale) => *scale,
-            // Nothing is measured in steps of 0.
-            Scaling::TimesFactor(name) => match scales.named(name)? {
-                step if step.is_zero() => return Err(Missing::Mismatch),
-                step => step,
-            },
+            Scaling::TimesFactor(name) => scales.step(name)?,
             Scaling::TimesByRaw(bands) => {
                 let holds = |band: &&Band| (band.lowest..=band.highest).contains(&number);
                 bands.iter().find(holds).ok_or(Missing::Mismatch)?.factor

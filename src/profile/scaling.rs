@@ -297,7 +297,7 @@ pub(super) fn within(
     let part = || {
         let raw = u16::try_from(raw).ok().filter(|raw| *raw <= full)?;
         let span = high.checked_sub(low)?;
-        let decimals = decimals(span.checked_div(full.into())?)?;
+        let decimals = decimals(span_step(full, low, high)?)?;
         let exact = span
             .checked_mul(raw.into())?
             .checked_div(full.into())?
@@ -309,6 +309,11 @@ pub(super) fn within(
         Some(figure)
     };
     part().ok_or(Missing::Mismatch)
+}
+
+/// What one raw step of a span is; `None` where it has no end.
+pub(super) fn span_step(full: u16, low: Decimal, high: Decimal) -> Option<Decimal> {
+    high.checked_sub(low)?.checked_div(full.into())
 }
 
 /// How many decimals a tenth of a step takes; `None` for no step at all.

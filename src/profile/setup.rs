@@ -1,5 +1,5 @@
-//! What scales depend on: which registers are read besides those asked for, and the numbers that
-//! follow from them.
+//! What points depend on: which others are read besides those asked for, and the numbers for scales
+//! that follow from them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -41,7 +41,7 @@ impl Setup {
         }
     }
 
-    /// The points that scales depend on, by name.
+    /// The points that others depend on, by name.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
@@ -144,6 +144,17 @@ impl Scales {
         number.unwrap_or(Err(Missing::Mismatch))
     }
 
+    /// The number that a raw one is multiplied with: nothing is measured in steps of 0.
+    pub(super) fn step(&self, name: &str) -> Result<Decimal, Missing> {
+        self.named(name).and_then(|step| {
+            if step.is_zero() {
+                Err(Missing::Mismatch)
+            } else {
+                Ok(step)
+            }
+        })
+    }
+
     /// The number of an operand.
     pub(super) fn operand(&self, operand: &Operand) -> Result<Decimal, Missing> {
         match operand {
@@ -158,15 +169,13 @@ impl Scales {
     /// The first of the numbers a point is scaled by that there is none of, or that makes no scale:
     /// a step of 0, or an end of a span that is its other end.
     pub fn lacking<'a>(&self, point: &'a Point) -> Option<&'a str> {
-        let names = point.scaling.names();
         let is_nothing = match &point.scaling {
-            Scaling::TimesFactor(name) => self.named(name) == Ok(Decimal::ZERO),
+            Scaling::TimesFactor(name) => self.step(name).is_err(),
             Scaling::Span { low, high, .. } => self.operand(low) == self.operand(high),
             Scaling::Times(_) | Scaling::TimesByRaw(_) => false,
         };
-        names
-            .into_iter()
-            .find(|name| is_nothing || self.named(name).is_err())
+        let mut names = point.scaling.names().into_iter();
+        names.find(|name| is_nothing || self.named(name).is_err())
     }
 
     fn follow(&self, rule: &Rule) -> Result<Decimal, Missing> {

@@ -1,4 +1,4 @@
-//! What fetched registers mean, together with the setup that scales depend on.
+//! What fetched registers mean, together with the setup that they depend on.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -19,7 +19,7 @@ pub struct Inquiry<'a, 's> {
     pub meter: &'a str,
     /// What is read.
     pub points: &'a [Point],
-    /// What the scales of these points depend on.
+    /// What these points depend on.
     pub setup: &'s Setup,
     /// The function for points that have none of their own.
     pub function: ReadFunction,
@@ -51,7 +51,7 @@ pub enum Trouble {
         /// What it said.
         code: ExceptionCode,
     },
-    /// A setup register arrived and holds what is no setting: nothing can be scaled by it.
+    /// A point that others depend on arrived and holds no value that it can have.
     NoSetting {
         /// The name of its point.
         point: String,
@@ -90,10 +90,9 @@ pub struct Taken<'a> {
 }
 
 /// Reads the points of one unit, in as few requests as it is known to allow, and with them the
-/// setup registers that their scales depend on: each time, for somebody may have changed them since.
-/// A unit that does not answer
-/// at all, or stops answering, is not asked further: every other read would cost a time-out as
-/// well.
+/// points that they depend on: each time, for somebody may have changed the setup since. A unit that
+/// does not answer at all, or stops answering, is not asked further: every other read would cost a
+/// time-out as well.
 pub fn take<'a>(client: &mut Client, inquiry: &Inquiry<'a, '_>, memory: &mut Memory) -> Taken<'a> {
     let time = client.utc_now();
     let asked = inquiry.points;
