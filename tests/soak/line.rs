@@ -27,14 +27,18 @@ const CHECK: u64 = 40;
 /// So many reads are tried then: on a busy machine one can fail that no fault has hit.
 const READS: u64 = 3;
 
+/// Reads during which the meter was late itself do not count among these; of those there are so many.
+const DISTURBED_READS: u64 = 50;
+
 /// An answer to something else must not be believed that comes this long after the request: twice
 /// the time-out, and 32 ms for adapters.
 const PROMISED: Duration = TIMEOUT
     .saturating_mul(2)
     .saturating_add(Duration::from_millis(32));
 
-/// So many wrong values of one line are told in full.
+/// So much of what goes wrong on one line is told in full, with so many events.
 const TOLD: u64 = 3;
+const EVENTS: usize = 80;
 
 /// What is known of the meter, and what it does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,7 +48,8 @@ pub(crate) enum Kind {
     /// Raw registers; either function reads them, and there is a loop-back.
     Known,
     /// The same, and it stalls: no answer may be mistaken however late. What that rests on is not
-    /// spoiled: loop-backs, and that a line does not echo now and then.
+    /// spoiled: that an answer bears its unit and function, that loop-backs are answered, and that a
+    /// line does not echo now and then.
     Stalling,
     /// Points of a profile.
     Profile,
@@ -78,8 +83,9 @@ impl Kind {
         match self {
             Self::Stalling => [3, 4]
                 .map(|function| {
+                    let without = "echo+echo-only+wrong-unit+stranger+wrong-function";
                     format!(
-                        "any,rate={rate},timeout={timeout},without=echo+echo-only,function={function}"
+                        "any,rate={rate},timeout={timeout},function={function},without={without}"
                     )
                 })
                 .into(),
@@ -147,7 +153,10 @@ struct Work<'a> {
     wire: Arc<Wire>,
     meter: RunningMeter,
     asker: Asker,
+    /// Asks in the place of a raw asker when the faults are over.
+    checker: Raw,
     chance: Rng,
+    check_chance: Rng,
     tally: Tally,
 }
 
@@ -171,7 +180,9 @@ pub(crate) fn run(plan: &Plan, clock: &Arc<dyn Clock>) -> Tally {
             Kind::Profile => Asker::Profile(Box::new(Readings::new())),
             _ => Asker::Raw(Raw::new(kind.registers(), kind.ways())),
         },
+        checker: Raw::new(kind.registers(), kind.ways()),
         chance: Rng::with_seed(!plan.seed),
+        check_chance: Rng::with_seed(plan.seed.rotate_left(32)),
         tally: Tally::default(),
     };
     while !work.is_done() {
@@ -233,29 +244,42 @@ impl Work<'_> {
 
     /// The faults are over: the line must read right. They begin again behind it.
     fn check(&mut self, client: &mut Client) {
-        self.rest();
-        let is_right = |outcome: &Outcome| matches!(outcome, Outcome::Right);
-        let mut right_at = None;
-        for read in 1..=READS {
+        let mut failed = 0;
+        let mut is_right = false;
+        for _ in 0..READS + DISTURBED_READS {
+            self.rest();
+            let withheld = self.meter.withheld();
             let start = self.clock.now();
+            // Of its own chance: what is asked besides does not depend on how often this is.
             let outcomes = match &mut self.asker {
-                Asker::Raw(raw) => vec![raw.ask(client, &mut self.chance)],
-                Asker::Profile(readings) => readings.ask(client, &mut self.chance, true),
+                Asker::Raw(_) => vec![self.checker.ask(client, &mut self.check_chance)],
+                Asker::Profile(readings) => readings.ask(client, &mut self.check_chance, true),
             };
+            let is_disturbed = self.meter.withheld() != withheld || !self.wire.is_idle();
             self.judge(start, &outcomes);
-            if outcomes.iter().all(is_right) {
-                right_at = Some(read);
+            is_right = outcomes
+                .iter()
+                .all(|outcome| matches!(outcome, Outcome::Right));
+            if is_right {
                 break;
+            }
+            failed += u64::from(!is_disturbed);
+            if failed == READS {
+                break;
+            }
+            if is_disturbed {
+                thread::sleep(TIMEOUT);
             }
         }
         let recoveries = &mut self.tally.recoveries;
-        match right_at {
-            Some(1) => recoveries.first += 1,
-            Some(_) => recoveries.later += 1,
-            None => {
+        match (is_right, failed) {
+            (true, 0) => recoveries.first += 1,
+            (true, _) => recoveries.later += 1,
+            (false, READS) => {
                 recoveries.never += 1;
                 self.tell("did not read right after its faults", "");
             }
+            (false, _) => recoveries.untold += 1,
         }
         self.wire.be_true(false);
     }
@@ -323,7 +347,8 @@ impl Work<'_> {
             out,
             "line {number} ({kind:?}, pace {pace:?}, seed {seed}) {what} at {now:.3} ms\n{detail}"
         );
-        for event in self.wire.events() {
+        let events = self.wire.events();
+        for event in &events[events.len().saturating_sub(EVENTS)..] {
             let _ = writeln!(out, "    {event}");
         }
     }

@@ -4,8 +4,8 @@
 //!
 //! The latest that a fault makes an answer begin is 40 ms after the request was heard, and the client
 //! reckons with it until 72 ms after it was sent. A request is not heard when the meter takes it more
-//! than [`MARGIN`] after it was sent, and nothing is written more than that after it was due. So an
-//! answer begins 60 ms after its request was sent, at the most, as far as the meter's own clock can
+//! than [`HEARING`] after it was sent, and nothing is written more than [`WRITING`] after it was due. So
+//! an answer begins 65 ms after its request was sent, at the most, as far as the meter's own clock can
 //! tell; what is left is the time between its look at the clock and the client's port. Only stalls are
 //! longer, and only lines have them where the client can tell answers apart however late they are.
 
@@ -27,8 +27,11 @@ use crate::pty;
 use crate::truth::Registers;
 use crate::wire::{What, Wire};
 
-/// How much later than meant the meter may be.
-const MARGIN: Duration = Duration::from_millis(10);
+/// How long after it was sent a request may be taken.
+const HEARING: Duration = Duration::from_millis(15);
+
+/// How long after it was due an answer may be written.
+const WRITING: Duration = Duration::from_millis(10);
 
 /// Without anything to do, the meter looks up this often.
 const IDLE: Duration = Duration::from_secs(1);
@@ -103,6 +106,11 @@ impl RunningMeter {
             // It ends with an error when the line is closed.
             thread: Some(std::thread::spawn(move || drop(meter.serve()))),
         }
+    }
+
+    /// How often it was late itself so far.
+    pub(crate) fn withheld(&self) -> u64 {
+        self.mishaps.withheld.load(Ordering::SeqCst)
     }
 
     /// What went through the fault rules so far.
@@ -204,7 +212,7 @@ impl Meter {
         let stamp = self.wire.take_stamp().unwrap_or_default();
         let now = self.clock.now();
         let late = now.saturating_sub(stamp);
-        if late > MARGIN {
+        if late > HEARING {
             self.withhold(late, frame);
             return Ok(());
         }
@@ -212,13 +220,13 @@ impl Meter {
             let answer = self.registers.answer(frame).unwrap_or_default();
             return self.write(&answer, now);
         }
-        if let Some(stalls) = self.stalls
-            && self.chance.f64() < stalls.rate
-            && now >= self.stall + stalls.apart
-        {
-            self.mishaps.stalls.fetch_add(1, Ordering::Relaxed);
-            let spread = stalls.longest.saturating_sub(stalls.shortest);
-            self.stall = now + stalls.shortest + spread.mul_f64(self.chance.f64());
+        if let Some(stalls) = self.stalls {
+            let [whether, how_long] = [self.chance.f64(), self.chance.f64()];
+            if whether < stalls.rate && now >= self.stall + stalls.apart {
+                self.mishaps.stalls.fetch_add(1, Ordering::Relaxed);
+                let spread = stalls.longest.saturating_sub(stalls.shortest);
+                self.stall = now + stalls.shortest + spread.mul_f64(how_long);
+            }
         }
         // It has no transport behind that can be lost, and no rule hangs up.
         let _ = self.faulty.send(frame);
@@ -258,7 +266,7 @@ impl Meter {
 
     fn write(&mut self, bytes: &[u8], due: Duration) -> std::io::Result<()> {
         let late = self.clock.now().saturating_sub(due);
-        if late > MARGIN {
+        if late > WRITING {
             self.withhold(late, bytes);
             return Ok(());
         }
@@ -273,7 +281,7 @@ impl Meter {
     }
 
     fn withhold(&self, late: Duration, bytes: &[u8]) {
-        self.mishaps.withheld.fetch_add(1, Ordering::Relaxed);
+        self.mishaps.withheld.fetch_add(1, Ordering::SeqCst);
         self.wire
             .note(self.clock.now(), What::Withheld { late }, bytes);
     }

@@ -39,6 +39,8 @@ pub(crate) struct Recoveries {
     pub(crate) later: u64,
     /// None was.
     pub(crate) never: u64,
+    /// The meter was late itself time after time.
+    pub(crate) untold: u64,
 }
 
 impl Tally {
@@ -60,6 +62,7 @@ impl Tally {
         self.recoveries.first += other.recoveries.first;
         self.recoveries.later += other.recoveries.later;
         self.recoveries.never += other.recoveries.never;
+        self.recoveries.untold += other.recoveries.untold;
         self.add_client(other.client);
         self.broken += other.broken;
     }
@@ -141,10 +144,12 @@ impl fmt::Display for Tally {
             first,
             later,
             never,
+            untold,
         } = self.recoveries;
         writeln!(
             f,
-            "after faults   right at once {first}, at a further read {later}, never {never}"
+            "after faults   right at once {first}, at a further read {later}, never {never}, \
+             the meter too late to tell {untold}"
         )?;
         if self.broken > 0 {
             writeln!(f, "broken         {}", self.broken)?;
