@@ -309,9 +309,9 @@ impl Work<'_> {
         };
         let count = 1 + wrong.count() as u64;
         let registers = self.plan.kind.registers();
-        // Where answers can be told apart however late they are, being late is no excuse.
-        let is_excused =
-            self.plan.kind != Kind::Stalling && self.wire.was_too_late(start, PROMISED, registers);
+        // Where answers can be told apart however late they are, being late alone is no excuse.
+        let is_excused = self.wire.was_too_late(start, PROMISED, registers)
+            && (self.plan.kind != Kind::Stalling || self.wire.was_loopback_withheld(start));
         let what = if is_excused {
             self.tally.excused += count;
             "believed what came too late"

@@ -2,7 +2,7 @@
 //! at. At the other end of each line is a meter that holds something else in every register of every
 //! unit, so that any mix-up shows.
 //!
-//! `cargo bench --bench soak -- --transactions 20000 --faults 0.3 --seed 7 --lines 16`
+//! `cargo bench --bench soak -- --transactions 20000 --faults 0.3 --seed 7 --lines 32`
 //!
 //! A transaction is a request on a line and what comes of it; so many of them, in all, are spoiled as
 //! the rate says. The same seed gives the same questions on each line, and to the n-th request on it
@@ -28,7 +28,9 @@
 //!   [`wire`]). The proof rests on nothing but one clock and what the client itself was given, so no
 //!   answer that the client was given in time is ever excused. A client that does not wait as long as
 //!   it promises, or does not look before it asks, is never excused either, for the port was not found
-//!   empty then.
+//!   empty then. On lines where answers can be told apart however late they are, by alternating
+//!   functions and by loop-backs, late answers are no excuse, unless the meter was too late to hear
+//!   the very loop-back: without its answer the client goes on as if the meter had none.
 //! * *The client.* It counts its own waiting from after its write, so being held up makes it wait
 //!   longer. Answers that arrive meanwhile are at the port when it looks, and it looks before each
 //!   request. An answer that it finds only after its time-out is missing, which is no error; only a
