@@ -94,12 +94,14 @@ impl Kind {
     }
 
     fn stalls(self) -> Option<Stalls> {
-        // Beyond what is waited for, and not so long that both functions and the loop-back fail in
-        // one: then the client has nothing left to tell answers apart with.
+        // Beyond what is waited for, which is 72 ms, and so short that what was held back has come
+        // before the client goes on without a loop-back that met silence. At the earliest that is
+        // 144 ms after the last request before the loop-back, which may have begun the stall: 72 ms
+        // until the loop-back is sent, and as long again until something else is.
         (self == Self::Stalling).then_some(Stalls {
             rate: 0.01,
             shortest: TIMEOUT * 4,
-            longest: TIMEOUT * 8,
+            longest: TIMEOUT * 6,
             apart: TIMEOUT * 25,
         })
     }

@@ -209,6 +209,8 @@ impl Meter {
     }
 
     fn hear(&mut self, frame: &[u8]) -> std::io::Result<()> {
+        // What is overdue must not pass as if it were due now.
+        self.deliver()?;
         let stamp = self.wire.take_stamp().unwrap_or_default();
         let now = self.clock.now();
         let late = now.saturating_sub(stamp);
