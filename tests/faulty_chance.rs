@@ -5,8 +5,8 @@ mod lying;
 
 use std::collections::BTreeMap;
 
-use meterpoll::transport::Timing;
 use meterpoll::transport::faulty::{FaultKind, FaultScript};
+use meterpoll::transport::{Timing, Transport};
 
 use self::lying::{Lying, READ, TRUE};
 
@@ -14,8 +14,9 @@ use self::lying::{Lying, READ, TRUE};
 fn chosen(script: FaultScript, requests: u32) -> BTreeMap<&'static str, u64> {
     let mut lying = Lying::with(script, Timing::Unpaced);
     for _ in 0..requests {
-        // Not listened to: a hang-up is met at the next request, and is no request of its own.
-        let _ = meterpoll::transport::Transport::send(&mut lying.line, &READ);
+        // A hang-up counts like any other.
+        lying.line.send(&READ).ok();
+        lying.line.discard_input().ok();
     }
     let counts = lying.line.counts();
     counts

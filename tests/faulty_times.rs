@@ -234,3 +234,13 @@ fn what_comes_behind_an_answer_passes() {
     assert_eq!(heard, [at(0, &once), at(500, &once)]);
     assert!(Lying::new(&["silence"]).ask(&request, 1000).is_empty());
 }
+
+#[test]
+fn what_arrives_while_it_is_discarded_is_discarded() {
+    for rules in [&[][..], &["crc"]] {
+        let mut lying = Lying::slow(rules);
+        lying.line.send(&READ).unwrap();
+        lying.line.discard_input().unwrap();
+        assert!(lying.listen(1000).is_empty(), "{rules:?}");
+    }
+}

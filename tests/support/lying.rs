@@ -48,6 +48,8 @@ pub(crate) fn read(unit: u8, function: u8, address: u8, count: u8) -> Vec<u8> {
 pub(crate) struct Meter {
     clock: Arc<FakeClock>,
     answers: VecDeque<u8>,
+    /// What handing over bytes takes.
+    effort: Duration,
 }
 
 /// What [`Meter`] says to a request.
@@ -77,6 +79,7 @@ impl Transport for Meter {
         if self.answers.is_empty() {
             self.clock.sleep(wait);
         }
+        self.clock.advance(self.effort);
         let count = self.answers.len().min(into.len());
         for (place, byte) in into.iter_mut().zip(self.answers.drain(..count)) {
             *place = byte;
@@ -103,10 +106,21 @@ impl Lying {
     }
 
     pub(crate) fn with(script: FaultScript, timing: Timing) -> Self {
+        Self::made(script, timing, Duration::ZERO)
+    }
+
+    /// The same as [`Self::new`], with a meter that takes a millisecond to hand over bytes.
+    pub(crate) fn slow(rules: &[&str]) -> Self {
+        let effort = Duration::from_millis(1);
+        Self::made(FaultScript::parse(rules).unwrap(), Timing::Unpaced, effort)
+    }
+
+    fn made(script: FaultScript, timing: Timing, effort: Duration) -> Self {
         let clock = Arc::new(FakeClock::new());
         let meter = Meter {
             clock: Arc::clone(&clock),
             answers: VecDeque::new(),
+            effort,
         };
         let line = Faulty::new(meter, script, timing, Arc::clone(&clock) as Arc<dyn Clock>);
         Self { clock, line }
