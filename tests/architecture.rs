@@ -44,7 +44,7 @@ const LAYERS: [(&str, &[&str]); 12] = [
 const EVERYWHERE: &[&str] = &[""];
 
 /// The libraries of `[dependencies]` and the files and folders whose job they are.
-const LIBRARIES: [(&str, &[&str]); 20] = [
+const LIBRARIES: [(&str, &[&str]); 21] = [
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("comfy_table", &["output/columns.rs"]),
@@ -53,12 +53,19 @@ const LIBRARIES: [(&str, &[&str]); 20] = [
     ("env_logger", &["commands/logging.rs"]),
     (
         "humantime",
-        &["cli/", "client/", "output/profile/", "profile/"],
+        &[
+            "cli/",
+            "client/",
+            "output/profile/",
+            "profile/",
+            "transport/error.rs",
+        ],
     ),
     ("jiff", EVERYWHERE),
     ("log", EVERYWHERE),
     ("postcard", &["build.rs", "profile/builtin.rs"]),
     ("rust_decimal", EVERYWHERE),
+    ("rustix", &["transport/lock.rs"]),
     ("serde", EVERYWHERE),
     ("serde_json", &["output/json.rs"]),
     ("serialport", &["transport/ports.rs", "transport/serial.rs"]),

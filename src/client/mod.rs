@@ -10,12 +10,13 @@
 //! * `debts` remembers the answers that may still come after failed attempts; they are waited for
 //!   before a *different* request goes out, and before the line is left.
 //!
-//! Beside that, `answer_times` keeps how long each unit takes to answer, for planning.
+//! A port that was lost is opened again before the next request: `regain`. Beside that, `answer_times` keeps how long each unit takes to answer, for planning.
 
 mod answer_times;
 pub mod belief;
 mod debts;
 pub mod failure;
+mod regain;
 pub mod transaction;
 
 pub use belief::Echo;

@@ -9,6 +9,7 @@ use super::answer_times::{AnswerTimes, Arrivals};
 use super::belief::{self, Certainty, Echo, Evidence, Expectation, Verdict};
 use super::debts::Debts;
 use super::failure::Failure;
+use super::regain::regain;
 use crate::codec::rtu::{self, Frame};
 use crate::codec::{Reply, Request, Response, Unit};
 use crate::transport::Line;
@@ -107,11 +108,15 @@ impl Client {
     }
 
     /// Leaves the line, and lets no late answer be taken for one to whoever opens it next: what
-    /// may still come is waited for. Takes no time when every request was answered.
+    /// may still come is waited for. Takes no time when every request was answered, or when the
+    /// port was lost already.
     ///
     /// # Errors
-    /// [`Failure::Port`] when the port is gone.
+    /// [`Failure::Port`] when the port is lost meanwhile.
     pub fn finish(mut self) -> Result<(), Failure> {
+        if self.line.loss().is_some() {
+            return Ok(());
+        }
         if self.debts.wait_until(None, self.line.now()).is_some() {
             info!("waiting for answers that may still come");
         }
@@ -119,10 +124,12 @@ impl Client {
     }
 
     /// Sends a request that changes nothing and returns its answer, repeating it when the line
-    /// fails.
+    /// fails. A port that was lost is opened again first: it is waited for as long as the attempts
+    /// would take, [`Patience::timeout`] each.
     ///
     /// # Errors
-    /// [`Failure`] of the last attempt. An exception is never repeated.
+    /// [`Failure`] of the last attempt. An exception is never repeated, nor is a request during
+    /// which the port is lost.
     pub fn request(
         &mut self,
         unit: Unit,
@@ -160,6 +167,7 @@ impl Client {
             frame: &frame,
             patience,
         };
+        regain(&mut self.line, patience)?;
         self.settle(Some((unit, &frame)))?;
         let mut retries = 1..=patience.retries;
         loop {
