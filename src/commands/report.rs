@@ -15,6 +15,7 @@ use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
 use crate::readings::Trouble;
 use crate::transport::OpenError;
+use crate::transport::holder::Holders;
 
 /// What to make of a port that was lost.
 const LOST_HINT: &str = "the adapter was unplugged, or the other side hung up; /dev/serial/by-id \
@@ -222,6 +223,10 @@ fn open_hint(error: &OpenError) -> Option<String> {
              such as brltty can take it away again)"
         }
         OpenError::NotSerial { .. } => "`meterpoll ports` lists the ports",
+        OpenError::Busy {
+            holders: Holders::Seen(_),
+            ..
+        } => "--wait 30s waits longer for it to end",
         OpenError::Busy { .. } => {
             "another program has it open, a cron job or ModemManager perhaps; --wait 30s waits longer"
         }
