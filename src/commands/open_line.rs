@@ -7,7 +7,8 @@ use log::info;
 
 use super::CommandError;
 use crate::cli::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
-use crate::client::{Client, Echo, Patience};
+use crate::client::{Client, Echo, Patience, QueryData, Ways};
+use crate::codec::FunctionCode;
 use crate::profile::{Limits, Profile};
 use crate::sim::SimulatedLine;
 use crate::transport::serial::Serial;
@@ -71,6 +72,13 @@ impl<'a> LinePlan<'a> {
             longest_answer: limits.longest_answer,
             retries: self.arguments.retries,
             pause: self.arguments.pause.unwrap_or(limits.pause),
+            ways: Ways {
+                interchangeable_reads: limits.interchangeable_reads,
+                loopback: limits
+                    .functions
+                    .contains(&FunctionCode::Diagnostics)
+                    .then_some(QueryData::Zero),
+            },
         }
     }
 
