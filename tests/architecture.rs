@@ -53,7 +53,13 @@ const LIBRARIES: [(&str, &[&str]); 20] = [
     ("env_logger", &["commands/logging.rs"]),
     (
         "humantime",
-        &["cli/", "client/", "output/profile/", "profile/"],
+        &[
+            "cli/",
+            "client/",
+            "output/loopback/",
+            "output/profile/",
+            "profile/",
+        ],
     ),
     ("jiff", EVERYWHERE),
     ("log", EVERYWHERE),
