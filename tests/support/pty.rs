@@ -38,7 +38,12 @@ impl PtyMeter {
 
     /// A line that hangs up in place of an answer to this request, counted from 1.
     pub(crate) fn hanging_up_after(requests: usize) -> Self {
-        Self::start(Box::new(|_| Vec::new()), requests)
+        Self::hanging_up(Box::new(|_| Vec::new()), requests)
+    }
+
+    /// A meter on a line that hangs up in place of an answer to this request, counted from 1.
+    pub(crate) fn hanging_up(behaviour: Box<Behaviour>, requests: usize) -> Self {
+        Self::start(behaviour, requests)
     }
 
     fn start(mut behaviour: Box<Behaviour>, last: usize) -> Self {
