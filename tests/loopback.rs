@@ -260,6 +260,26 @@ fn a_meter_behind_an_echo_is_heard() {
 }
 
 #[test]
+fn an_echo_that_is_said_to_be_there_and_is_not_is_told() {
+    let meter = meter(|request| healthy(17, request));
+    let port = meter.path();
+    let arguments = format!("-p {port} -a 17 --count 1 -t 1s --echo on");
+    check(
+        &arguments,
+        4,
+        &format!(
+            "unit 17 on {port} at 9600 8N1, <time>\n\
+             1: nothing but the echo of the own request came back\n\
+             \n\
+             1 try, 0 answered, 1 lost (100.0 %)\n\
+             damaged answers: 0, noise bytes: 0, late answers: 0, frames of others: 0, echo: no\n\
+             the line is bad: none of 1 answered\n"
+        ),
+        "hint: the line does not echo: leave --echo on out\n",
+    );
+}
+
+#[test]
 fn late_answers_are_thrown_away_and_told() {
     // The read at the beginning is answered late as well.
     let meter = meter(|request| {
@@ -521,9 +541,9 @@ fn a_dry_run_prints_what_would_be_sent() {
         "",
     );
     check(
-        "-a 17 --meter pqm --count 2 --echo on --dry-run",
+        "-a 17 --meter pqm --count 2 --dry-run",
         0,
-        "11 08 00 00 00 00 E2 9B\n11 08 00 00 00 00 E2 9B\n",
+        "11 03 00 00 00 01 86 9A\n11 08 00 00 00 00 E2 9B\n11 08 00 00 00 00 E2 9B\n",
         "",
     );
 }

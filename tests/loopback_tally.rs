@@ -252,7 +252,8 @@ fn what_may_be_an_echo_is_not_called_good() {
 #[test]
 fn only_our_own_echo_is_told_as_such() {
     let echo = || Failure::OnlyEcho;
-    let found = tries(0, several(3, echo));
+    let mut found = tries(0, several(3, echo));
+    found.echo = LineEcho::Present;
     assert_eq!(found.verdict(), Verdict::OnlyEcho);
     assert_eq!(
         found.to_string(),

@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Loopback, report: &mut Report) -> Result<ExitCode,
         format: arguments.format,
     };
     if arguments.dry_run {
-        return print(test.frames(&units, line.echo()).as_bytes());
+        return print(test.frames(&units).as_bytes());
     }
     let mut sink = sink(&test, &line, units.len(), report.is_quiet());
 
@@ -102,9 +102,8 @@ struct Test<'a> {
 
 impl Test<'_> {
     /// What would be sent when all goes well.
-    fn frames(&self, units: &[Unit], echo: Echo) -> String {
-        let first = units.first().filter(|_| echo != Echo::On);
-        let probe = first.map(|unit| (*unit, self.probe.clone()));
+    fn frames(&self, units: &[Unit]) -> String {
+        let probe = units.first().map(|unit| (*unit, self.probe.clone()));
         let tries = units.iter().flat_map(|unit| {
             let numbers = 1..=self.count.unwrap_or_default();
             numbers.map(|number| {

@@ -39,11 +39,7 @@ impl<'a> Run<'a> {
             stop,
             clock: SystemClock::new(),
             said,
-            echo: match said {
-                // Then a word has come back when it came twice, whatever the line does.
-                Echo::On => LineEcho::Present,
-                Echo::Auto | Echo::Off => LineEcho::Unknown,
-            },
+            echo: LineEcho::Unknown,
             answered: 0,
             faults: Vec::new(),
         }
@@ -123,6 +119,10 @@ impl<'a> Run<'a> {
             Some(failure @ Failure::Port(_)) => {
                 report.failure(&format!("unit {unit} on {}", self.test.line), &failure);
             }
+            // Only where an echo is waited for can a meter's answer be taken for one.
+            _ if self.echo == LineEcho::Absent && summary.failed.only_echo > 0 => {
+                report.advise("the line does not echo: leave --echo on out");
+            }
             last => {
                 if let Some(advice) = advice::advice(&summary, meter, last.as_ref()) {
                     report.advise(advice);
@@ -147,7 +147,11 @@ impl<'a> Run<'a> {
         let found = echo::find_out(client, unit, probe, *patience);
         self.echo = match found.inspect_err(|failure| self.note(failure))? {
             // Who says so may know better than what noise shows.
-            LineEcho::Unknown if self.said == Echo::Off => LineEcho::Absent,
+            LineEcho::Unknown => match self.said {
+                Echo::On => LineEcho::Present,
+                Echo::Off => LineEcho::Absent,
+                Echo::Auto => LineEcho::Unknown,
+            },
             found => found,
         };
         Ok(())

@@ -55,7 +55,7 @@ impl Summary {
         let is_clean = self.noticed == Noticed::default() && self.echo != LineEcho::Unknown;
         if tries == 0 {
             Verdict::Untried
-        } else if lost == tries && failed.only_echo > 0 {
+        } else if lost == tries && failed.only_echo > 0 && self.echo != LineEcho::Absent {
             Verdict::OnlyEcho
         } else if lost == tries || lost * 100 > tries * MOST_LOST_PERCENT {
             Verdict::Bad
