@@ -44,13 +44,14 @@ const LAYERS: [(&str, &[&str]); 12] = [
 const EVERYWHERE: &[&str] = &[""];
 
 /// The libraries of `[dependencies]` and the files and folders whose job they are.
-const LIBRARIES: [(&str, &[&str]); 20] = [
+const LIBRARIES: [(&str, &[&str]); 21] = [
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("comfy_table", &["output/columns.rs"]),
     ("crc", &["codec/rtu.rs"]),
     ("csv", &["output/csv.rs"]),
     ("env_logger", &["commands/logging.rs"]),
+    ("fastrand", &["transport/faulty/"]),
     (
         "humantime",
         &[
@@ -59,6 +60,7 @@ const LIBRARIES: [(&str, &[&str]); 20] = [
             "output/loopback/",
             "output/profile/",
             "profile/",
+            "transport/faulty/",
         ],
     ),
     ("jiff", EVERYWHERE),
@@ -69,7 +71,7 @@ const LIBRARIES: [(&str, &[&str]); 20] = [
     ("serde_json", &["output/json.rs"]),
     ("serialport", &["transport/ports.rs", "transport/serial.rs"]),
     ("signal_hook", &["commands/signals.rs"]),
-    ("strsim", &["profile/"]),
+    ("strsim", &["profile/", "transport/faulty/"]),
     ("thiserror", EVERYWHERE),
     (
         "toml",

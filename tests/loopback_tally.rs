@@ -225,18 +225,6 @@ fn anything_else_on_the_line_makes_it_doubtful() {
 }
 
 #[test]
-fn the_bytes_of_a_spoilt_answer_are_not_noise() {
-    let damaged = Failure::Damaged { received: 8 };
-    assert_eq!(summary([Err(damaged)], noise(8)).noticed, noise(0));
-    let truncated = Failure::Truncated {
-        received: 3,
-        expected: 8,
-    };
-    assert_eq!(summary([Err(truncated)], noise(3)).noticed, noise(0));
-    assert_eq!(summary([Err(silence())], noise(3)).noticed, noise(3));
-}
-
-#[test]
 fn what_may_be_an_echo_is_not_called_good() {
     let mut tally = Tally::default();
     tally.add(&Ok(tenths(1)), Noticed::default());

@@ -98,12 +98,22 @@ impl Client {
         let mut heard = Heard::default();
         let result = self.listen(asked, sent, &mut heard);
         heard.evidence.stray += heard.forgotten;
-        self.ledger.of(asked.unit).note(&heard.evidence);
+        let counters = self.ledger.of(asked.unit);
+        counters.echoes += heard.evidence.echoes as u64;
+        counters.others += heard.evidence.others as u64;
         let reply = match result {
             Ok(reply) => reply,
             Err(Some(lost)) => return Err(lost),
-            Err(None) => return Err(self.give_up(asked, &heard)),
+            Err(None) => {
+                let failure = self.give_up(asked, &heard);
+                // Else they are the answer's own.
+                if failure.is_silence() {
+                    self.ledger.of(asked.unit).stray += heard.evidence.stray as u64;
+                }
+                return Err(failure);
+            }
         };
+        self.ledger.of(asked.unit).stray += heard.evidence.stray as u64;
         if heard.evidence.stray > 0 {
             info!(
                 "{} stray bytes before the answer skipped",

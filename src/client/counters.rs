@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use super::belief::Evidence;
 use super::failure::Failure;
 use crate::codec::Unit;
 
@@ -40,13 +39,6 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// What was seen beside an answer, or in place of one.
-    pub(super) fn note(&mut self, seen: &Evidence) {
-        self.stray += seen.stray as u64;
-        self.echoes += seen.echoes as u64;
-        self.others += seen.others as u64;
-    }
-
     /// One more attempt has failed.
     pub(super) fn fail(&mut self, failure: &Failure) {
         match failure {

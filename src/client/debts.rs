@@ -41,6 +41,8 @@ struct Account {
     overdue: Vec<Debt>,
     /// Functions of which answers to more than one request are overdue.
     confused: Vec<FunctionCode>,
+    /// Until when nothing else is asked, whatever comes.
+    held_until: Option<Duration>,
 }
 
 /// An answer that was owed and has come.
@@ -88,6 +90,7 @@ impl Account {
             self.overdue.push(debt);
         }
         self.confused.dedup();
+        self.held_until = self.held_until.filter(|until| *until > now);
     }
 
     fn all(&self) -> impl Iterator<Item = &Debt> {
@@ -95,7 +98,7 @@ impl Account {
     }
 
     fn is_settled(&self) -> bool {
-        self.awaited.is_empty() && self.overdue.is_empty()
+        self.awaited.is_empty() && self.overdue.is_empty() && self.held_until.is_none()
     }
 }
 
@@ -114,14 +117,21 @@ impl Debts {
             request: request.clone(),
             frame: frame.clone(),
             line_until: begin + patience.timeout,
-            unit_until: begin + patience.timeout.max(patience.longest_answer),
+            unit_until: begin + patience.at_the_most(),
             longest_answer: patience.longest_answer,
         });
     }
 
-    /// Whether any answer is waited for.
+    /// Whether anything is waited for.
     pub(super) fn is_owed(&self) -> bool {
-        self.0.values().any(|account| !account.awaited.is_empty())
+        let waits = |account: &Account| !account.awaited.is_empty() || account.held_until.is_some();
+        self.0.values().any(waits)
+    }
+
+    /// Something may come of a unit until then that nobody can tell from an answer.
+    pub(super) fn hold(&mut self, unit: Unit, until: Duration) {
+        let account = self.0.entry(unit).or_default();
+        account.held_until = account.held_until.max(Some(until));
     }
 
     /// How many answers a unit owes.
@@ -205,10 +215,16 @@ impl Debts {
             Next::Request(asked, _) | Next::Unlike(asked) if asked != unit => Some(debt.line_until),
             _ => Some(debt.unit_until),
         };
+        let held = |unit: Unit, account: &Account| match next {
+            Next::Request(asked, _) | Next::Unlike(asked) if asked != unit => None,
+            _ => account.held_until,
+        };
         self.0
             .iter()
-            .flat_map(|(unit, account)| account.awaited.iter().map(|debt| (*unit, debt)))
-            .filter_map(|(unit, debt)| until(unit, debt))
+            .flat_map(|(unit, account)| {
+                let debts = account.awaited.iter().filter_map(|debt| until(*unit, debt));
+                debts.chain(held(*unit, account))
+            })
             .max()
             .filter(|until| *until > now)
     }

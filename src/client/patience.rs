@@ -33,6 +33,11 @@ impl Default for Patience {
 }
 
 impl Patience {
+    /// How long an answer may take to begin at the most.
+    pub(super) fn at_the_most(self) -> Duration {
+        self.timeout.max(self.longest_answer)
+    }
+
     /// How long a request may take in all while the meter says that it is busy: as long as all
     /// attempts at a silent one take, and a second at least, for a meter that says so is alive.
     pub(super) fn in_all(self) -> Duration {

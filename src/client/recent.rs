@@ -1,12 +1,12 @@
 //! The last answers, so that a second copy of one is not taken for the answer to something else.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::time::Duration;
 
 use crate::codec::{Frame, Response, Unit};
 
 /// So many answers are kept at the most.
-const MOST: usize = 16;
+const MOST: usize = 64;
 
 /// An answer that was believed.
 struct Answer {
@@ -19,15 +19,19 @@ struct Answer {
 
 /// The last answers on a line.
 #[derive(Default)]
-pub(super) struct Recent(VecDeque<Answer>);
+pub(super) struct Recent {
+    answers: VecDeque<Answer>,
+    /// How long after them second copies have come.
+    delays: BTreeMap<Unit, Duration>,
+}
 
 impl Recent {
     /// One more answer was believed at `at`.
     pub(super) fn note(&mut self, at: Duration, unit: Unit, frame: &Frame, response: &Response) {
-        if self.0.len() == MOST {
-            self.0.pop_front();
+        if self.answers.len() == MOST {
+            self.answers.pop_front();
         }
-        self.0.push_back(Answer {
+        self.answers.push_back(Answer {
             at,
             unit,
             frame: frame.clone(),
@@ -35,20 +39,35 @@ impl Recent {
         });
     }
 
-    /// Whether these registers were the unit's answer to another request since `since`.
-    pub(super) fn holds(
+    /// How long ago, but not before `since`, these registers were the unit's answer to another
+    /// request.
+    pub(super) fn age(
         &self,
-        since: Duration,
+        (since, now): (Duration, Duration),
         unit: Unit,
         frame: &Frame,
         response: &Response,
-    ) -> bool {
+    ) -> Option<Duration> {
+        let is_it = |answer: &&Answer| {
+            answer.at >= since
+                && answer.unit == unit
+                && answer.response == *response
+                && answer.frame != *frame
+        };
         matches!(response, Response::Registers { .. })
-            && self.0.iter().any(|answer| {
-                answer.at >= since
-                    && answer.unit == unit
-                    && answer.response == *response
-                    && answer.frame != *frame
-            })
+            .then(|| self.answers.iter().rev().find(is_it))
+            .flatten()
+            .map(|answer| now.saturating_sub(answer.at))
+    }
+
+    /// A second copy of an answer of the unit has come so long after the first.
+    pub(super) fn learn_delay(&mut self, unit: Unit, delay: Duration) {
+        let known = self.delays.entry(unit).or_default();
+        *known = delay.max(*known);
+    }
+
+    /// How long after an answer of the unit its second copy comes, on a line that makes them.
+    pub(super) fn delay(&self, unit: Unit) -> Option<Duration> {
+        self.delays.get(&unit).copied()
     }
 }

@@ -21,7 +21,8 @@
 //!   either. It is tried once; a meter without function 08 must not be lost for ever.
 //! * *A second look*: registers that are, word for word, what the unit has just given for something
 //!   else may be a second copy of that answer, as a repeater or a gateway can make it. They are asked
-//!   for once more. Costs one transaction, and only where two blocks are equal.
+//!   for once more. Costs one transaction, and only where two blocks are equal. Where it was a copy,
+//!   the time by which it came later is kept free behind every answer from then on.
 //!
 //! The first two always, then the functions, then the loop-back: the cheapest first. For a meter of
 //! which nothing is known only waiting is left, and an answer that is later than that and as long as
@@ -47,6 +48,16 @@ const BUSY_WAITS: [Duration; 3] = [
 
 /// The word of a loop-back that serves as a barrier, where any word does: unlike noise.
 const BARRIER: u16 = 0xA5C3;
+
+/// So often registers are asked for once more that were the answer to something else.
+const MOST_LOOKS: usize = 4;
+
+/// An answer that may be a second copy of another.
+struct Doubtful {
+    response: Response,
+    /// How long ago the other was believed.
+    age: Duration,
+}
 
 impl Client {
     /// Sends a request that changes nothing and returns its answer, repeating it when the line
@@ -90,13 +101,20 @@ impl Client {
         let mut retries = 1..=patience.retries;
         let mut busy_waits = BUSY_WAITS.iter();
         let mut faults_of_memory = 1..=1;
-        let mut doubtful = None;
+        let mut doubtful = Vec::new();
         let mut pause = patience.pause;
         loop {
             let answer = self.attempt(&asked, pause);
             pause = patience.pause;
             let failure = match answer {
                 Ok(answer) => match self.believe(&asked, answer, &mut doubtful) {
+                    None if doubtful.len() > MOST_LOOKS => {
+                        self.hold_for_copies(&asked, &doubtful);
+                        doubtful.clear();
+                        self.settle(Next::Unlike(unit))?;
+                        let found = "only copies of what it answered before".to_owned();
+                        Failure::Mismatch { found }
+                    }
                     None => continue,
                     Some(Reply::Normal(response)) => return Ok(response),
                     Some(Reply::Exception { code, .. }) => Failure::Exception(code),
@@ -145,46 +163,65 @@ impl Client {
     }
 
     /// Takes an answer as paid; `None` for one that may be a second copy of another and has to be
-    /// asked for once more. `doubtful` holds such a one meanwhile.
+    /// asked for once more. `doubtful` holds such ones meanwhile.
     fn believe(
         &mut self,
         asked: &Asked,
         answer: Answer,
-        doubtful: &mut Option<Response>,
+        doubtful: &mut Vec<Doubtful>,
     ) -> Option<Reply> {
         let now = self.line.now();
-        // That was the gateway: the unit itself may still answer.
-        if answer.reply.exception() == Some(ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND)
-        {
-            return Some(answer.reply);
-        }
-        if let Reply::Normal(response) = &answer.reply {
-            let Patience {
-                timeout,
-                longest_answer,
+        let Asked { unit, frame, .. } = asked;
+        let response = match &answer.reply {
+            Reply::Normal(response) => response,
+            // That was the gateway: the unit itself may still answer.
+            Reply::Exception {
+                code: ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND,
                 ..
-            } = asked.patience;
-            let since = now.saturating_sub(timeout.max(longest_answer));
-            match doubtful {
-                None if self.recent.holds(since, asked.unit, &asked.frame, response) => {
-                    info!(
-                        "unit {}: the same registers as in an answer before, asking once more",
-                        asked.unit
-                    );
-                    *doubtful = Some(response.clone());
-                    return None;
-                }
-                // So both are answers, and the registers really are the same.
-                Some(before) if before == response => {
-                    self.debts.answered(asked.unit, &asked.frame, now);
-                }
-                Some(_) => self.ledger.of(asked.unit).copies += 1,
-                None => {}
+            } => return Some(answer.reply),
+            Reply::Exception { .. } => {
+                self.debts.answered(*unit, frame, now);
+                return Some(answer.reply);
             }
-            self.recent.note(now, asked.unit, &asked.frame, response);
+        };
+        let since = now.saturating_sub(asked.patience.at_the_most());
+        if doubtful
+            .iter()
+            .any(|doubtful| doubtful.response == *response)
+        {
+            // Both are answers, and the registers really are the same.
+            self.debts.answered(*unit, frame, now);
+        } else if let Some(age) = self.recent.age((since, now), *unit, frame, response) {
+            info!("unit {unit}: the same registers as in an answer before, asking once more");
+            doubtful.push(Doubtful {
+                response: response.clone(),
+                age,
+            });
+            return None;
+        } else if !doubtful.is_empty() {
+            self.hold_for_copies(asked, doubtful);
         }
-        self.debts.answered(asked.unit, &asked.frame, now);
+        if let Some(delay) = self.recent.delay(*unit) {
+            self.debts.hold(*unit, now + delay + delay / 2);
+        }
+        self.recent.note(now, *unit, frame, response);
+        self.debts.answered(*unit, frame, now);
         Some(answer.reply)
+    }
+
+    /// Answers of the unit come twice: all that is under way by now looks like an answer, and every
+    /// answer will from now on.
+    fn hold_for_copies(&mut self, asked: &Asked, copies: &[Doubtful]) {
+        let delay = copies.iter().map(|copy| copy.age).max().unwrap_or_default();
+        let unit = asked.unit;
+        info!(
+            "unit {unit}: answers come twice, {} ms later",
+            delay.as_millis()
+        );
+        self.ledger.of(unit).copies += copies.len() as u64;
+        self.recent.learn_delay(unit, delay);
+        let until = self.line.now() + asked.patience.at_the_most();
+        self.debts.hold(unit, until);
     }
 
     /// The form of a request of which no late answer to something else can be taken for its

@@ -118,13 +118,7 @@ impl Tally {
         self.tries += 1;
         self.noticed.late += beside.late;
         self.noticed.others += beside.others;
-        // The bytes of a spoilt answer are not noise beside it.
-        if !matches!(
-            result,
-            Err(Failure::Damaged { .. } | Failure::Truncated { .. })
-        ) {
-            self.noticed.noise += beside.noise;
-        }
+        self.noticed.noise += beside.noise;
         let time = match result {
             Ok(time) => *time,
             Err(failure) => return self.fail(failure),
