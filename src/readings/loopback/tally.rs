@@ -60,7 +60,7 @@ impl Failed {
 pub struct Noticed {
     /// Bytes that belong to no frame.
     pub noise: u64,
-    /// Answers that came after their time.
+    /// Answers that came after their time, before the last try went out.
     pub late: u64,
     /// Frames of other units.
     pub others: u64,
