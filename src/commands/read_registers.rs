@@ -32,7 +32,9 @@ pub(super) fn run(
     let units = units(&arguments.unit, &limits)?;
     let points = points(arguments, profile.as_ref())?;
     let function = function(arguments, &limits);
-    let asking = Asking::new(&line, profile.as_ref(), &points, function);
+    let mut asking = Asking::new(&line, profile.as_ref(), &points, function);
+    // Who names a function gets that one.
+    asking.patience.ways.interchangeable_reads &= arguments.function.is_none();
     if arguments.dry_run || arguments.plan {
         return show(arguments, &line, &units, &asking);
     }
