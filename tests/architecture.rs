@@ -57,6 +57,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
         &[
             "cli/",
             "client/",
+            "output/loopback/",
             "output/profile/",
             "profile/",
             "transport/error.rs",

@@ -61,6 +61,11 @@ impl Client {
         self.answer_times.median(unit)
     }
 
+    /// Whether the line sends our own bytes back, as far as that has shown; `None` before.
+    pub const fn echoes(&self) -> Option<bool> {
+        self.echoes
+    }
+
     /// What has been counted of a unit so far.
     pub fn counters(&self, unit: Unit) -> Counters {
         self.ledger.get(unit)

@@ -9,7 +9,7 @@ use super::CommandError;
 use crate::cli::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
 use crate::client::{Client, Echo, Patience, QueryData, Ways};
 use crate::codec::FunctionCode;
-use crate::profile::{Limits, Profile};
+use crate::profile::{Limits, LoopbackData, Profile};
 use crate::sim::SimulatedLine;
 use crate::transport::serial::Serial;
 use crate::transport::traced::Traced;
@@ -61,7 +61,8 @@ impl<'a> LinePlan<'a> {
         format!("{} at {}", self.port(), self.settings)
     }
 
-    fn port(&self) -> &str {
+    /// The port as it was named; empty when none was.
+    pub(super) fn port(&self) -> &str {
         self.arguments.port.as_deref().unwrap_or_default()
     }
 
@@ -77,13 +78,30 @@ impl<'a> LinePlan<'a> {
                 loopback: limits
                     .functions
                     .contains(&FunctionCode::Diagnostics)
-                    .then_some(QueryData::Zero),
+                    .then_some(match limits.loopback_data {
+                        LoopbackData::Any => QueryData::Any,
+                        LoopbackData::Zero => QueryData::Zero,
+                    }),
             },
         }
     }
 
     /// Opens the port and returns a client on it.
     pub(super) fn open(&self) -> Result<Client, CommandError> {
+        self.open_with(self.echo())
+    }
+
+    /// What was said of echoes.
+    pub(super) fn echo(&self) -> Echo {
+        match self.arguments.echo {
+            EchoChoice::Auto => Echo::Auto,
+            EchoChoice::On => Echo::On,
+            EchoChoice::Off => Echo::Off,
+        }
+    }
+
+    /// The same with another way to take echoes.
+    pub(super) fn open_with(&self, echo: Echo) -> Result<Client, CommandError> {
         let clock: Arc<dyn Clock> = Arc::new(SystemClock::new());
         let transport = self.transport(&clock)?;
         if !self.arguments.settle.is_zero() {
@@ -93,11 +111,6 @@ impl<'a> LinePlan<'a> {
             Box::new(Traced::new(transport, Arc::clone(&clock)))
         } else {
             transport
-        };
-        let echo = match self.arguments.echo {
-            EchoChoice::Auto => Echo::Auto,
-            EchoChoice::On => Echo::On,
-            EchoChoice::Off => Echo::Off,
         };
         info!("opened {}", self.name());
         let line = Line::new(transport, clock, Timing::Paced(self.settings))?;

@@ -104,6 +104,18 @@ impl Report {
         }
     }
 
+    /// Prints why a unit cannot be asked any more.
+    pub(super) fn failure(&mut self, place: &str, failure: &Failure) {
+        say(format_args!("error: {place}: {failure}"));
+        causes(failure);
+        self.hint(failure_hint(failure).map(str::to_owned));
+    }
+
+    /// Prints what to try.
+    pub(super) fn advise(&mut self, hint: &str) {
+        self.hint(Some(hint.to_owned()));
+    }
+
     /// Prints something a person may want to know although all is well.
     pub(super) fn remark(&self, text: &str) {
         if !self.quiet {
@@ -170,6 +182,9 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::Select(error) => return select_hint(error),
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
+        }
+        CommandError::Function { code: 8, .. } => {
+            "without --meter it is sent all the same, and the meter may refuse it"
         }
         CommandError::Function { .. } => {
             "the other function reads its registers: see --function, or 3xxxx and 4xxxx with \
@@ -246,7 +261,7 @@ fn open_hint(error: &OpenError) -> Option<String> {
     Some(text.to_owned())
 }
 
-fn failure_hint(failure: &Failure) -> Option<&'static str> {
+pub(super) fn failure_hint(failure: &Failure) -> Option<&'static str> {
     Some(match failure {
         Failure::Silence { .. } => {
             "check --unit, --baud, --parity and --stop-bits against the meter, then power and \

@@ -28,7 +28,7 @@ pub mod setup;
 pub mod value;
 
 pub use error::ProfileError;
-pub use model::{Limits, Profile};
+pub use model::{Limits, LoopbackData, Profile};
 
 pub use plan::Plan;
 pub use point::Point;
