@@ -4,11 +4,18 @@
 //! [`traced`] wraps any of them and shows the bytes. [`line::Line`] adds what the standard asks of
 //! everybody on a wire: silence before each frame. [`clock`] is where time comes from, so that all
 //! of this runs on a fake one in tests. [`ports`] tells which serial ports there are.
+//!
+//! A server has its clients on an [`Outside`]: a serial port, a pty or sockets ([`outside`],
+//! `pty`, [`listen`]).
 
 pub mod clock;
 pub mod error;
 pub mod line;
+pub mod listen;
+pub mod outside;
 pub mod ports;
+#[cfg(unix)]
+pub mod pty;
 pub mod serial;
 pub mod settings;
 pub mod traced;
@@ -18,6 +25,7 @@ use std::time::Duration;
 pub use clock::{Clock, SystemClock};
 pub use error::{OpenError, TransportError};
 pub use line::Line;
+pub use outside::{Afterwards, ClientId, Heard, Outside};
 pub use settings::{LineSettings, Parity, StopBits, Timing};
 
 /// A medium that carries bytes both ways.

@@ -37,11 +37,10 @@ fn bits(names: &Names, shown: &str) -> Option<u16> {
     })
 }
 
-fn of_name(names: &Names, name: &str) -> Option<u16> {
-    let mut named = names.iter();
-    named
-        .find(|(_, known)| *known == name)
-        .map(|(code, _)| *code)
+fn of_name(names: &Names, wanted: &str) -> Option<u16> {
+    let mut pairs = names.iter();
+    let pair = pairs.find(|(_, name)| *name == wanted);
+    pair.map(|(code, _)| *code)
 }
 
 /// `0x00FF`, `0b101`, `255`.
