@@ -51,9 +51,16 @@ const LIBRARIES: [(&str, &[&str]); 21] = [
     ("crc", &["codec/rtu.rs"]),
     ("csv", &["output/csv.rs", "sim/values.rs"]),
     ("env_logger", &["commands/logging.rs"]),
+    ("fastrand", &["transport/faulty/"]),
     (
         "humantime",
-        &["cli/", "client/", "output/profile/", "profile/"],
+        &[
+            "cli/",
+            "client/",
+            "output/profile/",
+            "profile/",
+            "transport/faulty/",
+        ],
     ),
     ("jiff", EVERYWHERE),
     ("log", EVERYWHERE),
@@ -64,7 +71,7 @@ const LIBRARIES: [(&str, &[&str]); 21] = [
     ("serde_json", &["output/json.rs"]),
     ("serialport", &["transport/ports.rs", "transport/serial.rs"]),
     ("signal_hook", &["commands/signals.rs"]),
-    ("strsim", &["profile/"]),
+    ("strsim", &["profile/", "transport/faulty/"]),
     ("thiserror", EVERYWHERE),
     (
         "toml",

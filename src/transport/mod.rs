@@ -1,7 +1,7 @@
 //! Moves bytes and keeps the line's time.
 //!
 //! A [`Transport`] is a medium: the [`serial`] port, or the simulated line in [`crate::sim`].
-//! [`traced`] wraps any of them and shows the bytes. [`line::Line`] adds what the standard asks of
+//! [`traced`] wraps any of them and shows the bytes, [`faulty`] spoils them. [`line::Line`] adds what the standard asks of
 //! everybody on a wire: silence before each frame. [`clock`] is where time comes from, so that all
 //! of this runs on a fake one in tests. [`ports`] tells which serial ports there are.
 //!
@@ -10,6 +10,7 @@
 
 pub mod clock;
 pub mod error;
+pub mod faulty;
 pub mod line;
 pub mod listen;
 pub mod outside;
@@ -24,6 +25,7 @@ use std::time::Duration;
 
 pub use clock::{Clock, SystemClock};
 pub use error::{OpenError, TransportError};
+pub use faulty::{FaultScript, Faulty};
 pub use line::Line;
 pub use outside::{Afterwards, ClientId, Heard, Outside};
 pub use settings::{LineSettings, Parity, StopBits, Timing};
