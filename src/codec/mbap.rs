@@ -7,12 +7,10 @@
 
 use super::cursor::{self, Cursor};
 use super::error::DecodeError;
+use super::length::MOST_DATA_BYTES;
 
 /// Bytes before the data unit.
 pub const HEADER_BYTES: usize = 7;
-
-/// The most bytes a data unit has (AP 4.1): the 256 of an RTU frame without unit and CRC.
-pub const MOST_DATA_BYTES: usize = 253;
 
 /// Bytes before those that the length counts.
 const UNCOUNTED: usize = 6;

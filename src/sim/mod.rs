@@ -14,6 +14,7 @@
 //! * [`kinds`]: which model stands behind which profile.
 //! * [`values`]: a file of values that meters hold whatever the load does.
 //! * [`line`](mod@line): the transport.
+//! * [`server`]: the line with clients of others on it.
 
 pub mod em2x;
 pub mod history;
@@ -25,6 +26,7 @@ pub mod model;
 pub mod pm290;
 mod powers;
 pub mod pqm;
+pub mod server;
 pub mod values;
 pub mod wave;
 mod words;
@@ -36,3 +38,4 @@ pub use meter::Meter;
 pub use model::{Blank, Content, Measured, Model};
 pub use pm290::Pm290;
 pub use pqm::Pqm;
+pub use server::Server;
