@@ -51,6 +51,11 @@ fn kind(profile: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == profile)
 }
 
+/// The names of the meters on [`SimulatedLine::new`], by unit.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    KINDS.iter().map(|kind| kind.name)
+}
+
 /// The unit that a meter of this name has when none is given: the one it has on
 /// [`SimulatedLine::new`], 1 for a meter that is not on it.
 pub fn usual_unit(profile: &str) -> u16 {

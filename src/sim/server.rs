@@ -268,6 +268,9 @@ impl<O: Outside> Server<O> {
         {
             state = self.ask(&request)?;
         }
+        if self.has_heard_all() {
+            self.waiting.clear();
+        }
         Ok(state)
     }
 

@@ -64,6 +64,24 @@ pub trait Outside {
     fn finish(&mut self, limit: Duration);
 }
 
+impl Outside for Box<dyn Outside> {
+    fn hear(&mut self, wait: Duration) -> Result<Heard, TransportError> {
+        (**self).hear(wait)
+    }
+
+    fn say(&mut self, client: ClientId, bytes: &[u8]) -> Result<(), TransportError> {
+        (**self).say(client, bytes)
+    }
+
+    fn hang_up(&mut self, client: ClientId) -> Result<Afterwards, OpenError> {
+        (**self).hang_up(client)
+    }
+
+    fn finish(&mut self, limit: Duration) {
+        (**self).finish(limit);
+    }
+}
+
 /// A serial port with clients at its other end.
 pub struct SerialOutside {
     name: String,

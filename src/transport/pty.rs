@@ -15,37 +15,15 @@ use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
 use rustix::io::{Errno, ioctl_fionread};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
-use thiserror::Error;
 
 use super::outside::{CHUNK, heard_on_line};
-use super::{Afterwards, ClientId, Heard, OpenError, Outside, TransportError};
+use super::{Afterwards, ClientId, Heard, OpenError, Outside, PtyError, TransportError};
+
+/// After this long what was written has come to the other end, and if it is not there, it was read.
+const ON_ITS_WAY: Duration = Duration::from_millis(100);
 
 /// How often it is looked whether a client has read everything.
 const LOOK_AGAIN: Duration = Duration::from_millis(1);
-
-/// Why there is no pty.
-#[derive(Debug, Error)]
-pub enum PtyError {
-    /// The system makes none.
-    #[error("no pty can be made")]
-    None(#[source] io::Error),
-    /// There is something of that name.
-    #[error("{path} exists already, as {what}")]
-    Exists {
-        /// The name.
-        path: String,
-        /// What it is.
-        what: &'static str,
-    },
-    /// The name cannot be given.
-    #[error("the pty cannot be named {path}")]
-    Name {
-        /// The name.
-        path: String,
-        /// What the system said.
-        source: io::Error,
-    },
-}
 
 /// A pty, raw as a serial line is.
 pub struct Pty {
@@ -177,7 +155,15 @@ impl Outside for Pty {
             return;
         };
         let start = Instant::now();
-        while start.elapsed() < limit && ioctl_fionread(&ends.theirs).is_ok_and(|left| left > 0) {
+        let mut has_come = false;
+        while start.elapsed() < limit {
+            // What was written takes a moment to come to the other end.
+            match ioctl_fionread(&ends.theirs) {
+                Ok(0) if has_come || start.elapsed() >= ON_ITS_WAY => return,
+                Ok(0) => {}
+                Ok(_) => has_come = true,
+                Err(_) => return,
+            }
             std::thread::sleep(LOOK_AGAIN);
         }
     }
