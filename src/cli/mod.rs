@@ -14,6 +14,12 @@ mod meters;
     reason = "its doc comments are help texts, where [default: ...] is no link"
 )]
 mod read_registers;
+#[allow(
+    rustdoc::broken_intra_doc_links,
+    rustdoc::invalid_html_tags,
+    reason = "its doc comments are help texts, where [default: ...] is no link"
+)]
+mod simulate;
 mod usage;
 mod values;
 
@@ -26,8 +32,9 @@ pub use meters::{
     CheckMeters, ExportMeter, Meters, MetersCommand, ShowFormat, ShowMeter, VerifyMeter,
 };
 pub use read_registers::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
+pub use simulate::Simulate;
 pub use usage::{Usage, completion_script, parse};
-pub use values::Units;
+pub use values::{MeterUnits, Units};
 
 /// What the program ends with, code by code.
 pub const EXIT_CODES: [(u8, &str); 10] = [
@@ -114,6 +121,8 @@ pub enum Command {
     Meters(Meters),
     /// List serial ports, without opening any
     Ports,
+    /// Be a meter, or several, on a pty, a serial port or TCP, with faults on request
+    Simulate(Box<Simulate>),
     /// Print a shell's completion script
     Completions(Completions),
 }

@@ -14,6 +14,7 @@ mod read_registers;
 mod report;
 mod show_plan;
 mod signals;
+mod simulate;
 mod trouble;
 
 use std::ffi::OsString;
@@ -40,6 +41,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Loopback(arguments) => loopback::run(&arguments, &mut report),
         Command::Meters(arguments) => meters::run(&arguments, &mut report),
         Command::Ports => ports::list(&report),
+        Command::Simulate(arguments) => simulate::run(&arguments, &report),
         Command::Completions(arguments) => completions::print_script(&arguments),
     };
     result.unwrap_or_else(|error| report.error(&error))

@@ -34,22 +34,8 @@ impl<'a> LinePlan<'a> {
     /// What was typed wins over the meter's factory setting, and that over 9600 8N1.
     pub(super) fn new(arguments: &'a LineArguments, profile: Option<&Profile>) -> Self {
         let factory = profile.map_or_else(LineSettings::default, |profile| profile.line);
-        let settings = LineSettings {
-            baud: arguments.baud.unwrap_or(factory.baud),
-            parity: arguments
-                .parity
-                .map_or(factory.parity, |parity| match parity {
-                    ParityChoice::None => Parity::None,
-                    ParityChoice::Even => Parity::Even,
-                    ParityChoice::Odd => Parity::Odd,
-                }),
-            stop_bits: arguments
-                .stop_bits
-                .map_or(factory.stop_bits, |bits| match bits {
-                    StopBitsChoice::One => StopBits::One,
-                    StopBitsChoice::Two => StopBits::Two,
-                }),
-        };
+        let (baud, parity) = (arguments.baud, arguments.parity);
+        let settings = settings(baud, parity, arguments.stop_bits, factory);
         Self {
             arguments,
             settings,
@@ -134,20 +120,53 @@ impl<'a> LinePlan<'a> {
             let port = port.to_owned();
             return Err(CommandError::Tcp { port });
         }
-        let give_up = clock.now() + self.arguments.wait;
-        let mut is_told = false;
-        loop {
-            match Serial::open(port, self.settings) {
-                Ok(serial) => return Ok(Box::new(serial)),
-                Err(OpenError::Busy { .. }) if clock.now() < give_up => {
-                    if !is_told {
-                        info!("port {port} is in use, waiting for it");
-                        is_told = true;
-                    }
-                    clock.sleep(TRY_AGAIN);
+        let serial = while_busy(&**clock, port, self.arguments.wait, || {
+            Serial::open(port, self.settings)
+        });
+        Ok(Box::new(serial?))
+    }
+}
+
+/// What was typed wins over the meter's factory setting.
+pub(super) fn settings(
+    baud: Option<u32>,
+    parity: Option<ParityChoice>,
+    stop_bits: Option<StopBitsChoice>,
+    factory: LineSettings,
+) -> LineSettings {
+    LineSettings {
+        baud: baud.unwrap_or(factory.baud),
+        parity: parity.map_or(factory.parity, |parity| match parity {
+            ParityChoice::None => Parity::None,
+            ParityChoice::Even => Parity::Even,
+            ParityChoice::Odd => Parity::Odd,
+        }),
+        stop_bits: stop_bits.map_or(factory.stop_bits, |bits| match bits {
+            StopBitsChoice::One => StopBits::One,
+            StopBitsChoice::Two => StopBits::Two,
+        }),
+    }
+}
+
+/// Opens a port, again and again while another program holds it, at most for `wait`.
+pub(super) fn while_busy<T>(
+    clock: &dyn Clock,
+    port: &str,
+    wait: Duration,
+    mut open: impl FnMut() -> Result<T, OpenError>,
+) -> Result<T, OpenError> {
+    let give_up = clock.now() + wait;
+    let mut is_told = false;
+    loop {
+        match open() {
+            Err(OpenError::Busy { .. }) if clock.now() < give_up => {
+                if !is_told {
+                    info!("port {port} is in use, waiting for it");
+                    is_told = true;
                 }
-                Err(error) => return Err(error.with_holders().into()),
+                clock.sleep(TRY_AGAIN);
             }
+            result => return result.map_err(OpenError::with_holders),
         }
     }
 }

@@ -44,3 +44,19 @@ pub enum Content {
     /// Text, a date, a time.
     Other(Raw),
 }
+
+/// A model that knows nothing: all registers hold 0.
+#[derive(Debug, Clone, Copy)]
+pub struct Blank;
+
+impl Model for Blank {
+    fn measure(&self, _now: Timestamp) -> Box<dyn Measured + '_> {
+        Box::new(Self)
+    }
+}
+
+impl Measured for Blank {
+    fn content(&self, _point: &str) -> Option<Content> {
+        None
+    }
+}
