@@ -31,6 +31,7 @@ complete -c meterpoll -n "__fish_meterpoll_needs_command" -s V -l version -d 'Pr
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "ports" -d 'List serial ports, without opening any'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "completions" -d 'Print a shell\'s completion script'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s a -l unit -d 'The units to read: 17, or 1,2,5-9; --unit-id and --slave mean the same' -r
@@ -126,15 +127,35 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s q -l quiet
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand ports" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s p -l port -d 'Where clients come from; its path or address is the first line on stdout [default: a new pty]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l meter -d 'A meter and its units: a name that `meters list` shows or a profile file, and `=17`, `=1,2,5-9`; may be repeated [default: em24=1, pm290=2, em21=3, pqm=17]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l values -d 'CSV with values that stay as they are, while all others move with the load' -r -F
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l seed -d 'Which loads are measured: the same seed and time give the same values; `sim:` has 17' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l answer-time -d 'How long the meters take before they answer' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l fault -d 'What goes wrong, such as `late=1.1,rate=0.1`; may be repeated: the first rule that applies to a request decides' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l fault-script -d 'A file of such rules, one a line; they come after those of --fault' -r -F
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l count -d 'End after this many requests were answered, with exit code 0' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s b -l baud -d 'Speed in bits a second, of a serial port [default: the first meter\'s factory setting]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s P -l parity -d 'Parity, of a serial port [default: the first meter\'s factory setting]' -r -f -a "none\t'No parity bit'
+even\t'Even parity, the standard\'s default'
+odd\t'Odd parity'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s s -l stop-bits -d 'Stop bits, of a serial port [default: the first meter\'s factory setting]' -r -f -a "1\t'One stop bit'
+2\t'Two stop bits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l wait -d 'How long to wait for a serial port that another program holds' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s V -l version -d 'Print version'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s V -l version -d 'Print version'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "ports" -d 'List serial ports, without opening any'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "completions" -d 'Print a shell\'s completion script'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "ports" -d 'List serial ports, without opening any'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "completions" -d 'Print a shell\'s completion script'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "list" -d 'List the meters inside the program and your own'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "show" -d 'Show a meter: its line, limits and groups, and its points'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "export" -d 'Print the profile of a meter as the TOML file that it is'

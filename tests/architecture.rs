@@ -44,7 +44,7 @@ const LAYERS: [(&str, &[&str]); 12] = [
 const EVERYWHERE: &[&str] = &[""];
 
 /// The libraries of `[dependencies]` and the files and folders whose job they are.
-const LIBRARIES: [(&str, &[&str]); 21] = [
+const LIBRARIES: [(&str, &[&str]); 22] = [
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("comfy_table", &["output/columns.rs"]),
