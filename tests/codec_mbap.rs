@@ -5,7 +5,7 @@ use meterpoll::codec::mbap::{Header, encode, of_frame, open};
 use proptest::prelude::*;
 
 /// "Modbus Messaging on TCP/IP Implementation Guide V1.0b", 4.4.2.1: a read of one register, of
-/// transaction 1501h to unit FFh.
+/// transaction 0x1501 to unit 0xFF.
 const READ: [u8; 12] = [
     0x15, 0x01, // transaction
     0x00, 0x00, // protocol

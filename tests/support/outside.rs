@@ -131,7 +131,7 @@ impl Scene {
         let mut state = State::Serving;
         let mut turns = 0;
         while state == State::Serving && clock.now() < end {
-            state = server.turn(end - clock.now()).unwrap();
+            state = server.turn(end.saturating_sub(clock.now())).unwrap();
             turns += 1;
             assert!(turns < 100_000, "it goes round without waiting");
         }
