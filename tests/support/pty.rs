@@ -112,7 +112,7 @@ impl Drop for PtyMeter {
 }
 
 /// Both ends of a raw pty and the path of the second; no child process inherits either.
-fn pair() -> Result<(File, OwnedFd, String), Box<dyn Error>> {
+pub(crate) fn pair() -> Result<(File, OwnedFd, String), Box<dyn Error>> {
     let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC;
     let master = openpt(flags)?;
     grantpt(&master)?;
