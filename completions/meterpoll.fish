@@ -56,7 +56,7 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s t
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l wait -d 'How long to wait for a port that another program holds' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
 on\t'The line echoes'
 off\t'The line does not echo'"
@@ -108,7 +108,7 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_s
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l wait -d 'How long to wait for a port that another program holds' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
 on\t'The line echoes'
 off\t'The line does not echo'"

@@ -44,7 +44,7 @@ const LAYERS: [(&str, &[&str]); 12] = [
 const EVERYWHERE: &[&str] = &[""];
 
 /// The libraries of `[dependencies]` and the files and folders whose job they are.
-const LIBRARIES: [(&str, &[&str]); 21] = [
+const LIBRARIES: [(&str, &[&str]); 22] = [
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("comfy_table", &["output/columns.rs"]),
@@ -59,6 +59,7 @@ const LIBRARIES: [(&str, &[&str]); 21] = [
             "client/",
             "output/profile/",
             "profile/",
+            "transport/error.rs",
             "transport/faulty/",
         ],
     ),
@@ -66,6 +67,7 @@ const LIBRARIES: [(&str, &[&str]); 21] = [
     ("log", EVERYWHERE),
     ("postcard", &["build.rs", "profile/builtin.rs"]),
     ("rust_decimal", EVERYWHERE),
+    ("rustix", &["transport/lock.rs"]),
     ("serde", EVERYWHERE),
     ("serde_json", &["output/json.rs"]),
     ("serialport", &["transport/ports.rs", "transport/serial.rs"]),

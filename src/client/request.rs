@@ -36,6 +36,7 @@ use super::attempt::{Answer, Asked};
 use super::debts::Next;
 use super::failure::Failure;
 use super::patience::{Patience, QueryData};
+use super::regain::regain;
 use super::transaction::Client;
 use crate::codec::{ExceptionCode, FunctionCode, Reply, Request, Response, Unit};
 
@@ -61,10 +62,11 @@ struct Doubtful {
 
 impl Client {
     /// Sends a request that changes nothing and returns its answer, repeating it when the line
-    /// fails or the unit is busy.
+    /// fails or the unit is busy. A port that was lost is opened again first: it is waited for as
+    /// long as the attempts would take, [`Patience::timeout`] each.
     ///
     /// # Errors
-    /// [`Failure`] of the last attempt.
+    /// [`Failure`] of the last attempt. A request during which the port is lost is never repeated.
     pub fn request(
         &mut self,
         unit: Unit,
@@ -96,6 +98,7 @@ impl Client {
         ends_with_silence: bool,
     ) -> Result<Response, Failure> {
         let wanted = Asked::new(unit, request.clone(), patience);
+        regain(&mut self.line, patience)?;
         let mut asked = self.told_apart(&wanted)?;
         let give_up = self.line.now() + patience.in_all();
         let mut retries = 1..=patience.retries;

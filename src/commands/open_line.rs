@@ -101,6 +101,7 @@ impl<'a> LinePlan<'a> {
         };
         info!("opened {}", self.name());
         let line = Line::new(transport, clock, Timing::Paced(self.settings))?;
+        let line = line.settling(self.arguments.settle);
         Ok(Client::new(line, echo))
     }
 
@@ -121,11 +122,18 @@ impl<'a> LinePlan<'a> {
             return Err(CommandError::Tcp { port });
         }
         let give_up = clock.now() + self.arguments.wait;
+        let mut is_told = false;
         loop {
             match Serial::open(port, self.settings) {
                 Ok(serial) => return Ok(Box::new(serial)),
-                Err(OpenError::Busy { .. }) if clock.now() < give_up => clock.sleep(TRY_AGAIN),
-                Err(error) => return Err(error.into()),
+                Err(OpenError::Busy { .. }) if clock.now() < give_up => {
+                    if !is_told {
+                        info!("port {port} is in use, waiting for it");
+                        is_told = true;
+                    }
+                    clock.sleep(TRY_AGAIN);
+                }
+                Err(error) => return Err(error.with_holders().into()),
             }
         }
     }

@@ -15,6 +15,7 @@ use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
 use crate::readings::Trouble;
 use crate::transport::OpenError;
+use crate::transport::holder::Holders;
 
 /// What to make of a port that was lost.
 const LOST_HINT: &str = "the adapter was unplugged, or the other side hung up; /dev/serial/by-id \
@@ -222,6 +223,10 @@ fn open_hint(error: &OpenError) -> Option<String> {
              such as brltty can take it away again)"
         }
         OpenError::NotSerial { .. } => "`meterpoll ports` lists the ports",
+        OpenError::Busy {
+            holders: Holders::Seen(_),
+            ..
+        } => "--wait 30s waits longer for it to end",
         OpenError::Busy { .. } => {
             "another program has it open, a cron job or ModemManager perhaps; --wait 30s waits longer"
         }
@@ -266,6 +271,25 @@ fn failure_hint(failure: &Failure) -> Option<&'static str> {
         Failure::Exception(ExceptionCode::ILLEGAL_DATA_ADDRESS) => {
             "the meter has no such registers, or not as many at once; addresses are as on the \
              wire, from 0 (for 40001 and the like see --numbering modicon)"
+        }
+        Failure::Exception(ExceptionCode::SERVER_DEVICE_FAILURE) => {
+            "the meter itself failed: its display or its manual may say why"
+        }
+        Failure::Exception(ExceptionCode::ACKNOWLEDGE) => {
+            "the meter is still at work on something: ask again later"
+        }
+        Failure::Exception(ExceptionCode::SERVER_DEVICE_BUSY) => {
+            "the meter is there but busy, perhaps somebody is at its keys: ask again later"
+        }
+        Failure::Exception(ExceptionCode::MEMORY_PARITY_ERROR) => {
+            "the memory of the meter is damaged: it needs service"
+        }
+        Failure::Exception(ExceptionCode::GATEWAY_PATH_UNAVAILABLE) => {
+            "a gateway on the way has no path to this unit: check its setup, and --unit"
+        }
+        Failure::Exception(ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND) => {
+            "a gateway on the way got no answer from the unit: check --unit, then power and wiring \
+             behind the gateway"
         }
         Failure::Port(_) => LOST_HINT,
         Failure::Exception(_) => return None,
