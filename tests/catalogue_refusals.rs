@@ -153,12 +153,32 @@ fn a_unit_that_is_not_there_costs_the_others_its_time_out_and_the_wait_for_a_lat
                 assert_eq!(read.is_err(), dead.contains(&number));
             }
         }
-        let periods: Vec<Duration> = starts.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let periods: Vec<Duration> = starts
+            .windows(2)
+            .map(|pair| pair[1].saturating_sub(pair[0]))
+            .collect();
         assert_eq!(periods.iter().min(), periods.iter().max());
         periods[0]
     };
     let (alive, dead) = (cycle(&[]), cycle(&[1]));
     // The answer of the dead one is no longer there.
     let answered = THINKS + SILENCE;
-    assert_eq!(dead, alive - answered + T + T + ANSWER + ADAPTER);
+    assert_eq!(dead + answered, alive + T + T + ANSWER + ADAPTER);
+}
+
+/// Rows 60 to 62.
+#[test]
+fn a_read_during_which_the_port_is_lost_fails_at_once_and_the_next_is_right() {
+    for rule in ["hang-up=before,on=1", "hang-up=during,on=1"] {
+        let mut case = Case::new([rule]);
+        let found = case.fails(1);
+        assert!(found.contains("was lost"), "{found}");
+        assert_eq!(case.attempts(), 1);
+        assert!(case.now() <= SILENCE + REQUEST + THINKS, "{rule}");
+        case.reads(2);
+    }
+    let mut case = Case::new(["hang-up=after,on=1"]);
+    case.reads(1);
+    let found = case.fails(2);
+    assert!(found.contains("was lost"), "{found}");
 }

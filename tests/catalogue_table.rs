@@ -10,8 +10,11 @@ fn tests_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests")
 }
 
-/// The numbers of each row, and its tests: file and name.
-fn rows() -> Vec<(Vec<u32>, Vec<(String, String)>)> {
+/// File and name.
+type Test = (String, String);
+
+/// The numbers of each row, and its tests.
+fn rows() -> Vec<(Vec<u32>, Vec<Test>)> {
     let rows = TABLE.lines().filter(|line| {
         let cell = line.strip_prefix("| ");
         cell.is_some_and(|cell| cell.starts_with(|first: char| first.is_ascii_digit()))
@@ -56,8 +59,7 @@ fn every_test_that_a_row_names_is_there() {
 
 #[test]
 fn every_test_of_the_catalogue_is_in_a_row() {
-    let named: BTreeSet<(String, String)> =
-        rows().into_iter().flat_map(|(_, tests)| tests).collect();
+    let named: BTreeSet<Test> = rows().into_iter().flat_map(|(_, tests)| tests).collect();
     for entry in fs::read_dir(tests_folder()).expect("a readable folder") {
         let path = entry.expect("an entry").path();
         let file = path.file_stem().and_then(|stem| stem.to_str()).unwrap();

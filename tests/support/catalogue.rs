@@ -16,7 +16,7 @@ use meterpoll::codec::rtu::{Destination, decode_request};
 use meterpoll::codec::{ReadFunction, RegisterRange, Request, Response};
 use meterpoll::transport::faulty::FaultTally;
 use meterpoll::transport::{
-    Clock, FaultScript, Faulty, Line, LineSettings, Timing, Transport, TransportError,
+    Clock, FaultScript, Faulty, Line, LineSettings, OpenError, Timing, Transport, TransportError,
 };
 
 use super::clock::FakeClock;
@@ -81,6 +81,8 @@ impl Case {
         let timing = Timing::Paced(settings);
         let meter_line = ScriptedLine::new(Arc::clone(clock), settings);
         meter_line.meter(meter);
+        // A port that a rule takes away is there again at once.
+        meter_line.come_back(Duration::ZERO);
         let mut transport: Box<dyn Transport> = Box::new(meter_line);
         let mut tallies = Vec::new();
         for rules in layers {
@@ -255,8 +257,9 @@ impl Transport for Watch {
                 silence: now.saturating_sub(self.wire_end),
                 frame: frame.to_vec(),
             });
+        self.inner.send(frame)?;
         self.wire_end = now + self.settings.transfer_time(frame.len());
-        self.inner.send(frame)
+        Ok(())
     }
 
     fn receive(&mut self, into: &mut [u8], wait: Duration) -> Result<usize, TransportError> {
@@ -269,5 +272,9 @@ impl Transport for Watch {
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
         self.inner.discard_input()
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
+        self.inner.reopen()
     }
 }

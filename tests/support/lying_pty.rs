@@ -12,7 +12,8 @@ use std::time::Duration;
 
 use meterpoll::codec::length::{Direction, of_frame};
 use meterpoll::transport::{
-    Clock, FaultScript, Faulty, LineSettings, SystemClock, Timing, Transport, TransportError,
+    Clock, FaultScript, Faulty, LineSettings, OpenError, SystemClock, Timing, Transport,
+    TransportError,
 };
 
 use super::pty::pair;
@@ -141,6 +142,11 @@ impl Transport for Truthful {
     }
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
+        self.0.clear();
+        Ok(())
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
         self.0.clear();
         Ok(())
     }
