@@ -44,12 +44,12 @@ const LAYERS: [(&str, &[&str]); 12] = [
 const EVERYWHERE: &[&str] = &[""];
 
 /// The libraries of `[dependencies]` and the files and folders whose job they are.
-const LIBRARIES: [(&str, &[&str]); 21] = [
+const LIBRARIES: [(&str, &[&str]); 22] = [
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("comfy_table", &["output/columns.rs"]),
     ("crc", &["codec/rtu.rs"]),
-    ("csv", &["output/csv.rs"]),
+    ("csv", &["output/csv.rs", "sim/values.rs"]),
     ("env_logger", &["commands/logging.rs"]),
     ("fastrand", &["transport/faulty/"]),
     (
@@ -57,8 +57,10 @@ const LIBRARIES: [(&str, &[&str]); 21] = [
         &[
             "cli/",
             "client/",
+            "output/loopback/",
             "output/profile/",
             "profile/",
+            "transport/error.rs",
             "transport/faulty/",
         ],
     ),
@@ -66,6 +68,7 @@ const LIBRARIES: [(&str, &[&str]); 21] = [
     ("log", EVERYWHERE),
     ("postcard", &["build.rs", "profile/builtin.rs"]),
     ("rust_decimal", EVERYWHERE),
+    ("rustix", &["transport/lock.rs", "transport/pty.rs"]),
     ("serde", EVERYWHERE),
     ("serde_json", &["output/json.rs"]),
     ("serialport", &["transport/ports.rs", "transport/serial.rs"]),

@@ -70,6 +70,12 @@ impl Failure {
         }
     }
 
+    /// Whether the port was lost before, and did not come back for this request. Asking anything
+    /// else is likely to be as much in vain.
+    pub const fn is_port_away(&self) -> bool {
+        matches!(self, Self::Port(TransportError::NotBack { .. }))
+    }
+
     /// Whether the unit said nothing at all.
     pub const fn is_silence(&self) -> bool {
         matches!(self, Self::Silence { .. } | Self::OnlyEcho)

@@ -14,8 +14,9 @@
 //!   that have come, which a repeater may send again.
 //! * `transaction` holds all this together: the [`Client`].
 //!
-//! Beside that, `answer_times` keeps how long each unit takes to answer, for planning, and
-//! [`counters`] what has happened to each.
+//! A port that was lost is opened again before the next request: `regain`. Beside that,
+//! `answer_times` keeps how long each unit takes to answer, for planning, and [`counters`] what has
+//! happened to each.
 
 mod answer_times;
 mod attempt;
@@ -25,6 +26,7 @@ mod debts;
 pub mod failure;
 pub mod patience;
 mod recent;
+mod regain;
 mod request;
 mod transaction;
 

@@ -13,6 +13,7 @@ use super::debts::{Debts, Next};
 use super::failure::Failure;
 use super::patience::Patience;
 use super::recent::Recent;
+use super::regain::regain;
 use crate::codec::{Reply, Request, Unit};
 use crate::transport::Line;
 
@@ -30,6 +31,8 @@ pub struct Client {
     pub(super) sent: bool,
     pub(super) debts: Debts,
     pub(super) recent: Recent,
+    /// How many loop-backs have served as barriers.
+    pub(super) barriers: u16,
     pub(super) answer_times: AnswerTimes,
     pub(super) ledger: Ledger,
 }
@@ -44,6 +47,7 @@ impl Client {
             sent: false,
             debts: Debts::default(),
             recent: Recent::default(),
+            barriers: 0,
             answer_times: AnswerTimes::default(),
             ledger: Ledger::default(),
         }
@@ -58,6 +62,11 @@ impl Client {
     /// the request has ended: the median of its last answers on this line, `None` before the first.
     pub fn answer_time(&self, unit: Unit) -> Option<Duration> {
         self.answer_times.median(unit)
+    }
+
+    /// Whether the line sends our own bytes back, as far as that has shown; `None` before.
+    pub const fn echoes(&self) -> Option<bool> {
+        self.echoes
     }
 
     /// What has been counted of a unit so far.
@@ -78,6 +87,7 @@ impl Client {
         patience: Patience,
     ) -> Result<Duration, Failure> {
         let asked = Asked::new(unit, Request::ReturnQueryData(word), patience);
+        regain(&mut self.line, patience)?;
         self.settle(Next::Unlike(unit))?;
         let answer = self.attempt(&asked, patience.pause)?;
         self.debts.answered(unit, &asked.frame, self.line.now());
@@ -88,23 +98,29 @@ impl Client {
     }
 
     /// Leaves the line, and lets no late answer be taken for one to whoever opens it next: what
-    /// may still come is waited for. Takes no time when every request was answered.
+    /// may still come is waited for. Takes no time when every request was answered, or when the
+    /// port was lost already.
     ///
     /// # Errors
-    /// [`Failure::Port`] when the port is gone.
+    /// [`Failure::Port`] when the port is lost meanwhile.
     pub fn finish(mut self) -> Result<(), Failure> {
-        if self
-            .debts
-            .wait_until(Next::Nothing, self.line.now())
-            .is_some()
-        {
-            info!("waiting for answers that may still come");
-        }
-        let settled = self.settle(Next::Nothing);
+        let settled = if self.line.loss().is_some() {
+            Ok(())
+        } else {
+            self.say_what_is_owed();
+            self.settle(Next::Nothing)
+        };
         for (unit, counters) in self.ledger.all() {
             info!("unit {unit}: {counters}");
         }
         settled
+    }
+
+    fn say_what_is_owed(&mut self) {
+        let until = self.debts.wait_until(Next::Nothing, self.line.now());
+        if until.is_some() {
+            info!("waiting for answers that may still come");
+        }
     }
 
     /// Waits for the answers that earlier attempts may still get, and throws them away, as far as
@@ -127,6 +143,7 @@ impl Client {
             };
             wait = until.saturating_sub(self.line.now());
         }
+        self.debts.expire(self.line.now());
         Ok(())
     }
 

@@ -7,7 +7,7 @@
 //!
 //! A rule is `KIND[=VALUE][,KEY=VALUE]...`, such as `cut=5,rate=0.1,for=17`. For each request the
 //! rules are tried in their order, and the first that applies decides. A request that no rule
-//! applies to is answered truly. A late answer of an earlier request still comes, then.
+//! applies to is answered truly; late answers to earlier ones come all the same.
 //!
 //! | kind | value; without | keys | what happens |
 //! |---|---|---|---|
@@ -82,6 +82,7 @@
 //!
 //! After a hang-up the error is given once, and what was on its way is gone; then the transport
 //! works as before.
+
 mod carrier;
 mod counts;
 mod effect;

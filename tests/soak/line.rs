@@ -45,11 +45,12 @@ const EVENTS: usize = 80;
 pub(crate) enum Kind {
     /// Raw registers, of which nothing is known.
     Unknown,
-    /// Raw registers; either function reads them, and there is a loop-back.
+    /// Raw registers; either function reads them, and there is a loop-back. The line does not echo now
+    /// and then: once a client has heard an echo it takes the answers to loop-backs for echoes, and
+    /// does without a unit that it needs one of, for as long as it remembers late answers.
     Known,
     /// The same, and it stalls: no answer may be mistaken however late. What that rests on is not
-    /// spoiled: that an answer bears its unit and function, that loop-backs are answered, and that a
-    /// line does not echo now and then.
+    /// spoiled: that an answer bears its unit and function, and that loop-backs are answered.
     Stalling,
     /// Points of a profile.
     Profile,
@@ -89,20 +90,23 @@ impl Kind {
                     )
                 })
                 .into(),
-            _ => vec![format!("any,rate={rate},timeout={timeout}")],
+            Self::Known => {
+                vec![format!(
+                    "any,rate={rate},timeout={timeout},without=echo+echo-only"
+                )]
+            }
+            Self::Unknown | Self::Profile => vec![format!("any,rate={rate},timeout={timeout}")],
         }
     }
 
     fn stalls(self) -> Option<Stalls> {
-        // Beyond what is waited for, which is 72 ms, and so short that what was held back has come
-        // before the client goes on without a loop-back that met silence. At the earliest that is
-        // 144 ms after the last request before the loop-back, which may have begun the stall: 72 ms
-        // until the loop-back is sent, and as long again until something else is.
+        // Beyond what is waited for, which is 72 ms; long enough that both functions and the loop-back
+        // meet silence in one, and more than once.
         (self == Self::Stalling).then_some(Stalls {
             rate: 0.01,
             shortest: TIMEOUT * 4,
-            longest: TIMEOUT * 6,
-            apart: TIMEOUT * 25,
+            longest: TIMEOUT * 30,
+            apart: TIMEOUT * 10,
         })
     }
 }
@@ -311,9 +315,9 @@ impl Work<'_> {
         };
         let count = 1 + wrong.count() as u64;
         let registers = self.plan.kind.registers();
-        // Where answers can be told apart however late they are, being late alone is no excuse.
-        let is_excused = self.wire.was_too_late(start, PROMISED, registers)
-            && (self.plan.kind != Kind::Stalling || self.wire.was_loopback_withheld(start));
+        // Where answers can be told apart however late they are, being late is no excuse.
+        let is_excused =
+            self.plan.kind != Kind::Stalling && self.wire.was_too_late(start, PROMISED, registers);
         let what = if is_excused {
             self.tally.excused += count;
             "believed what came too late"

@@ -20,7 +20,9 @@ use std::time::Duration;
 use fastrand::Rng;
 use meterpoll::codec::length::{self, Direction};
 use meterpoll::transport::faulty::{FaultCounts, FaultTally};
-use meterpoll::transport::{Clock, FaultScript, Faulty, Timing, Transport, TransportError};
+use meterpoll::transport::{
+    Clock, FaultScript, Faulty, OpenError, Timing, Transport, TransportError,
+};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::pty;
@@ -151,6 +153,10 @@ impl Transport for Truth {
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
         self.answers.clear();
+        Ok(())
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
         Ok(())
     }
 }

@@ -29,8 +29,7 @@
 //!   answer that the client was given in time is ever excused. A client that does not wait as long as
 //!   it promises, or does not look before it asks, is never excused either, for the port was not found
 //!   empty then. On lines where answers can be told apart however late they are, by alternating
-//!   functions and by loop-backs, late answers are no excuse, unless the meter was too late to hear
-//!   the very loop-back: without its answer the client goes on as if the meter had none.
+//!   functions and by loop-backs, late answers are no excuse.
 //! * *The client.* It counts its own waiting from after its write, so being held up makes it wait
 //!   longer. Answers that arrive meanwhile are at the port when it looks, and it looks before each
 //!   request. An answer that it finds only after its time-out is missing, which is no error; only a

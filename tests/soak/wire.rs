@@ -18,7 +18,7 @@ use std::time::Duration;
 use meterpoll::codec::rtu::Hex;
 use meterpoll::codec::{Reply, Request, Response, rtu};
 use meterpoll::transport::serial::Serial;
-use meterpoll::transport::{Clock, Transport, TransportError};
+use meterpoll::transport::{Clock, OpenError, Transport, TransportError};
 
 use crate::truth::Registers;
 
@@ -159,33 +159,6 @@ impl Wire {
         }
         false
     }
-
-    /// Whether, since the unit that was asked from `start` on last said anything, the meter was too
-    /// late to hear a loop-back. A client that gets no answer to one goes on without it: it may be a
-    /// meter that has none.
-    pub(crate) fn was_loopback_withheld(&self, start: Duration) -> bool {
-        let events = self.events();
-        let asked = events.iter().rev().find(|event| event.what == What::Asked);
-        let Some(unit) = asked.and_then(|event| event.bytes.first().copied()) else {
-            return false;
-        };
-        let is_heard = |event: &&Event| {
-            matches!(event.what, What::Given { .. }) && event.bytes.first() == Some(&unit)
-        };
-        let before = events.iter().rev().filter(|event| event.at < start);
-        let mut since = before.take_while(|event| !is_heard(event));
-        let is_withheld = |event: &Event| matches!(event.what, What::Withheld { .. });
-        since.any(|event| event.what == What::Asked && is_loopback(&event.bytes, unit))
-            && events
-                .iter()
-                .any(|event| is_withheld(event) && is_loopback(&event.bytes, unit))
-    }
-}
-
-/// A loop-back to a unit.
-fn is_loopback(frame: &[u8], unit: u8) -> bool {
-    const DIAGNOSTICS: u8 = 8;
-    matches!(frame, [of, DIAGNOSTICS, ..] if *of == unit)
 }
 
 /// An answer that fits a request and is not to it.
@@ -285,5 +258,9 @@ impl Transport for Watched {
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
         self.port.discard_input()
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
+        self.port.reopen()
     }
 }

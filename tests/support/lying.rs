@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use meterpoll::codec::rtu::{self, Hex};
 use meterpoll::transport::faulty::{FaultScript, Faulty};
-use meterpoll::transport::{Clock, Timing, Transport, TransportError};
+use meterpoll::transport::{Clock, OpenError, Timing, Transport, TransportError};
 
 #[path = "clock.rs"]
 mod clock;
@@ -30,6 +30,9 @@ pub(crate) const TRUE: &str = "11 03 06 11 6B 11 6C 11 6D C2 A1";
 /// The unit that answers nothing.
 pub(crate) const SILENT: u8 = 99;
 
+/// The unit that says everything twice.
+pub(crate) const TWICE: u8 = 98;
+
 /// A frame with its CRC.
 pub(crate) fn sealed(body: &[u8]) -> Vec<u8> {
     [body, &rtu::check(body)].concat()
@@ -40,11 +43,13 @@ pub(crate) fn read(unit: u8, function: u8, address: u8, count: u8) -> Vec<u8> {
     sealed(&[unit, function, 0, address, 0, count])
 }
 
-/// Answers at once, and in each register with its unit and its address; writes are confirmed.
-/// Waits on the clock.
+/// Answers at once, and in each register with its unit and its address; of all other
+/// requests the first six bytes come back. Waits on the clock.
 pub(crate) struct Meter {
     clock: Arc<FakeClock>,
     answers: VecDeque<u8>,
+    /// What handing over bytes takes.
+    effort: Duration,
 }
 
 /// What [`Meter`] says to a request.
@@ -65,7 +70,8 @@ pub(crate) fn truth(request: &[u8]) -> Vec<u8> {
 
 impl Transport for Meter {
     fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
-        self.answers.extend(truth(frame));
+        let times = if frame.first() == Some(&TWICE) { 2 } else { 1 };
+        self.answers.extend(truth(frame).repeat(times));
         Ok(())
     }
 
@@ -73,6 +79,7 @@ impl Transport for Meter {
         if self.answers.is_empty() {
             self.clock.sleep(wait);
         }
+        self.clock.advance(self.effort);
         let count = self.answers.len().min(into.len());
         for (place, byte) in into.iter_mut().zip(self.answers.drain(..count)) {
             *place = byte;
@@ -81,6 +88,11 @@ impl Transport for Meter {
     }
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
+        self.answers.clear();
+        Ok(())
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
         self.answers.clear();
         Ok(())
     }
@@ -99,10 +111,21 @@ impl Lying {
     }
 
     pub(crate) fn with(script: FaultScript, timing: Timing) -> Self {
+        Self::made(script, timing, Duration::ZERO)
+    }
+
+    /// The same as [`Self::new`], with a meter that takes a millisecond to hand over bytes.
+    pub(crate) fn slow(rules: &[&str]) -> Self {
+        let effort = Duration::from_millis(1);
+        Self::made(FaultScript::parse(rules).unwrap(), Timing::Unpaced, effort)
+    }
+
+    fn made(script: FaultScript, timing: Timing, effort: Duration) -> Self {
         let clock = Arc::new(FakeClock::new());
         let meter = Meter {
             clock: Arc::clone(&clock),
             answers: VecDeque::new(),
+            effort,
         };
         let line = Faulty::new(meter, script, timing, Arc::clone(&clock) as Arc<dyn Clock>);
         Self { clock, line }
@@ -115,7 +138,7 @@ impl Lying {
     }
 
     /// What is heard for so many milliseconds from now: each piece in hex, behind how many
-    /// milliseconds from now it came. A lost port ends it.
+    /// milliseconds from now it came (whole microseconds). A lost port ends it.
     pub(crate) fn listen(&mut self, milliseconds: u64) -> Vec<String> {
         let start = self.clock.now();
         let end = start + Duration::from_millis(milliseconds);
@@ -133,8 +156,36 @@ impl Lying {
             };
             if count > 0 {
                 let passed = self.clock.now().saturating_sub(start);
-                let at = passed.as_secs_f64() * 1000.0;
-                heard.push(format!("{at}: {}", Hex(&chunk[..count])));
+                let (whole, part) = (passed.as_millis(), passed.subsec_micros() % 1000);
+                let part = if part == 0 {
+                    String::new()
+                } else {
+                    format!(".{part:03}")
+                };
+                heard.push(format!("{whole}{part}: {}", Hex(&chunk[..count])));
+            }
+        }
+    }
+
+    /// Lets so many milliseconds pass, and throws away what arrives and whether the port is lost.
+    pub(crate) fn listen_to_nothing(&mut self, milliseconds: u64) {
+        self.bytes(0, 512);
+        self.clock.advance(Duration::from_millis(milliseconds));
+        self.line.discard_input().ok();
+    }
+
+    /// The bytes of so many milliseconds from now, taken at most `room` at a time; a lost port ends
+    /// them.
+    pub(crate) fn bytes(&mut self, milliseconds: u64, room: usize) -> Vec<u8> {
+        let end = self.clock.now() + Duration::from_millis(milliseconds);
+        let mut chunk = vec![0; room];
+        let mut heard = Vec::new();
+        loop {
+            let left = end.saturating_sub(self.clock.now());
+            match self.line.receive(&mut chunk, left) {
+                Ok(0) if left.is_zero() => return heard,
+                Ok(count) => heard.extend_from_slice(&chunk[..count]),
+                Err(_) => return heard,
             }
         }
     }

@@ -14,7 +14,7 @@ use super::script::FaultScript;
 use super::stream::Stream;
 use super::when::Asked;
 use crate::codec::length::{self, Direction, MOST_FRAME_BYTES};
-use crate::transport::{Clock, Timing, Transport, TransportError};
+use crate::transport::{Clock, OpenError, Timing, Transport, TransportError};
 
 /// The most bytes taken from the transport behind at once.
 const CHUNK: usize = 512;
@@ -120,13 +120,18 @@ impl<T: Transport> Faulty<T> {
 
     /// The error of a port that is lost, with which everything on its way is lost as well.
     fn hang_up(&mut self) -> TransportError {
-        self.schedule.clear();
-        self.stream = None;
-        self.answer = Answer::Lost;
+        self.lose_all();
         TransportError::Lost {
             port: self.name.clone(),
             source: io::Error::new(io::ErrorKind::BrokenPipe, "a fault rule hangs up"),
         }
+    }
+
+    /// Nothing that is on its way arrives any more.
+    fn lose_all(&mut self) {
+        self.schedule.clear();
+        self.stream = None;
+        self.answer = Answer::Lost;
     }
 
     /// Copies what is due by now into `into`, in the order in which it arrives.
@@ -225,11 +230,11 @@ impl<T: Transport> Faulty<T> {
         } = *gathered;
         let behind = bytes.split_off(length);
         let arrival = case.answer(bytes, now);
-        self.expect(arrival);
+        self.arrive(arrival);
         self.pass(&behind, now);
     }
 
-    fn expect(&mut self, arrival: Arrival) {
+    fn arrive(&mut self, arrival: Arrival) {
         self.schedule.add(arrival.pieces);
         if arrival.stream.is_some() {
             self.stream = arrival.stream;
@@ -276,7 +281,7 @@ impl<T: Transport> Transport for Faulty<T> {
             end: now + self.timing.transfer_time(frame.len()),
         };
         let arrival = case.at_once();
-        self.expect(arrival);
+        self.arrive(arrival);
         self.answer = match case.fate() {
             Fate::Lost => Answer::Lost,
             Fate::Spoiled => Answer::Gathered(Box::new(Gathered {
@@ -314,16 +319,22 @@ impl<T: Transport> Transport for Faulty<T> {
     }
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
-        let now = self.clock.now();
-        if self.schedule.take_hang_up(now) {
+        if self.schedule.take_hang_up(self.clock.now()) {
             return Err(self.hang_up());
         }
         // An answer that is to come later is not among what has arrived.
         self.take_in(Duration::ZERO)?;
+        // Not sooner: what was taken in just now has arrived.
+        let now = self.clock.now();
         self.schedule.discard(now);
         if let Some(stream) = &mut self.stream {
             stream.skip(now);
         }
         self.inner.discard_input()
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
+        self.lose_all();
+        self.inner.reopen()
     }
 }

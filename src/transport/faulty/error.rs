@@ -94,10 +94,11 @@ fn names(allowed: &[&'static str]) -> String {
 /// The names that look most like `found`; all where none does.
 pub(super) fn near(found: &str, allowed: impl Iterator<Item = &'static str>) -> Vec<&'static str> {
     const ALIKE: f64 = 0.8;
+    let found = found.to_lowercase();
     let allowed: Vec<_> = allowed.collect();
     let nearest = allowed
         .iter()
-        .map(|name| (strsim::jaro_winkler(found, name), *name))
+        .map(|name| (strsim::jaro_winkler(&found, name), *name))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .filter(|(score, _)| *score >= ALIKE);
     nearest.map_or(allowed, |(_, name)| vec![name])
