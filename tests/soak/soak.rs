@@ -102,7 +102,7 @@ fn run(options: &options::Options) -> bool {
             thread::spawn(move || line::run(&plan, &clock))
         })
         .collect();
-    let mut usage = process::Growth::since(before);
+    let mut usage = process::Growth::since(before, options.lines);
     let mut next_word = WORD;
     while !lines.iter().all(thread::JoinHandle::is_finished) {
         thread::sleep(LOOK);
@@ -111,7 +111,8 @@ fn run(options: &options::Options) -> bool {
         }
         if clock.now() >= next_word {
             let running = lines.iter().filter(|line| !line.is_finished()).count();
-            eprintln!("{} min: {running} lines at work", next_word.as_secs() / 60);
+            let (minutes, memory) = (next_word.as_secs() / 60, usage.resident_kib());
+            eprintln!("{minutes} min: {running} lines at work, {memory} KiB");
             next_word += WORD;
         }
     }
