@@ -66,6 +66,8 @@ impl Model {
             Manner::Good => 14,
         };
         chunks.extend(self.spoil(frame, whole, delay, kind));
+        // Nothing is no sign of life on the wire.
+        chunks.retain(|(_, bytes)| !bytes.is_empty());
         chunks
     }
 
