@@ -49,7 +49,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
     ("clap_complete", &["cli/"]),
     ("comfy_table", &["output/columns.rs"]),
     ("crc", &["codec/rtu.rs"]),
-    ("csv", &["output/csv.rs"]),
+    ("csv", &["output/csv.rs", "sim/values.rs"]),
     ("env_logger", &["commands/logging.rs"]),
     ("fastrand", &["transport/faulty/"]),
     (
@@ -57,6 +57,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
         &[
             "cli/",
             "client/",
+            "output/loopback/",
             "output/profile/",
             "profile/",
             "transport/error.rs",
@@ -67,7 +68,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
     ("log", EVERYWHERE),
     ("postcard", &["build.rs", "profile/builtin.rs"]),
     ("rust_decimal", EVERYWHERE),
-    ("rustix", &["transport/lock.rs"]),
+    ("rustix", &["transport/lock.rs", "transport/pty.rs"]),
     ("serde", EVERYWHERE),
     ("serde_json", &["output/json.rs"]),
     ("serialport", &["transport/ports.rs", "transport/serial.rs"]),

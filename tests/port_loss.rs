@@ -99,6 +99,16 @@ fn wait_until(mut is_so: impl FnMut() -> bool) {
     }
 }
 
+/// Runs the cases of a test at once: they wait most of their time.
+fn at_once<T: Copy + Send, const N: usize>(cases: [T; N], test: impl Fn(T) + Sync) {
+    std::thread::scope(|scope| {
+        for case in cases {
+            let test = &test;
+            scope.spawn(move || test(case));
+        }
+    });
+}
+
 /// A run of the program, and what it has said so far.
 struct Run {
     child: Child,
@@ -176,7 +186,7 @@ fn a_port_that_is_lost_between_two_requests_is_opened_again() {
 
 #[test]
 fn a_port_that_is_lost_before_an_answer_or_in_the_middle_of_one_is_opened_again() {
-    for bytes in [0, 1, 4] {
+    at_once([0, 1, 4], |bytes| {
         let mut first = faltering_at(2, bytes);
         let second = healthy();
         let name = Name::of(&format!("waiting{bytes}"), &first);
@@ -192,7 +202,7 @@ fn a_port_that_is_lost_before_an_answer_or_in_the_middle_of_one_is_opened_again(
         // What the port was lost over is not asked again, once it was lost.
         assert_eq!(asked(&first)[..2], [1, 2]);
         assert_eq!(asked(&second), [3, 4]);
-    }
+    });
 }
 
 #[test]
@@ -304,7 +314,7 @@ fn a_port_that_somebody_else_takes_meanwhile_is_not_shared() {
 
 #[test]
 fn a_meter_is_verified_on_as_soon_as_the_port_is_back() {
-    for comes_back in [true, false] {
+    at_once([true, false], |comes_back| {
         let mut first = faltering_at(1, 0);
         let second = healthy();
         let name = Name::of(&format!("verify{comes_back}"), &first);
@@ -334,5 +344,5 @@ fn a_meter_is_verified_on_as_soon_as_the_port_is_back() {
         units.dedup();
         assert_eq!(units, if comes_back { vec![2, 3, 4] } else { vec![] });
         assert_eq!(output.status.code(), Some(if comes_back { 1 } else { 3 }));
-    }
+    });
 }

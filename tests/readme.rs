@@ -6,10 +6,12 @@ mod support {
     pub(crate) mod pty;
 }
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::PathBuf;
 
 use meterpoll::commands::ExitCode;
+use meterpoll::transport::faulty::{FaultKind, FaultRule, FaultScript};
 use support::program::Program;
 #[cfg(unix)]
 use support::pty::{self, PtyMeter};
@@ -60,6 +62,13 @@ fn every_example_that_needs_no_adapter_runs() {
             if command.contains("/dev/") || command == "ports" {
                 continue;
             }
+            // It goes on until it is stopped.
+            if command.starts_with("simulate") {
+                let words = std::iter::once("meterpoll".to_owned()).chain(words(command));
+                let parsed = meterpoll::cli::parse(words.map(Into::into));
+                assert!(parsed.is_ok(), "{command}: {parsed:?}");
+                continue;
+            }
             let mut program = Program::new("").folder(&folder);
             for word in words(command) {
                 program = program.argument(word);
@@ -74,6 +83,19 @@ fn every_example_that_needs_no_adapter_runs() {
         }
     }
     assert_eq!(ran, 10);
+}
+
+#[test]
+fn every_fault_is_named_and_every_rule_shown_is_one() {
+    let (_, table) = README
+        .split_once("| rule | what happens |")
+        .expect("a table");
+    let (table, _) = table.split_once("| any of them").expect("the last row");
+    let shown = table.split('`').skip(1).step_by(2);
+    let rules: Vec<&str> = shown.filter(|rule| *rule != "timeout=1s").collect();
+    let script = FaultScript::parse(&rules).expect("rules");
+    let shown: BTreeSet<FaultKind> = script.rules().iter().map(FaultRule::kind).collect();
+    assert_eq!(shown, FaultKind::all().collect());
 }
 
 #[test]
@@ -180,8 +202,10 @@ fn keys() -> Vec<&'static str> {
 
 #[test]
 fn every_option_it_names_is_in_the_help() {
-    let help = Program::new("read-registers --help").output();
-    let help = String::from_utf8(help.stdout).expect("text");
+    let help = ["read-registers", "loopback", "simulate"]
+        .map(|command| Program::new(&format!("{command} --help")).output().stdout)
+        .concat();
+    let help = String::from_utf8(help).expect("text");
     let mut named: Vec<&str> = README
         .split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'))
         .filter(|word| word.starts_with("--") && word.trim_matches('-').len() > 1)

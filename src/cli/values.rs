@@ -73,3 +73,45 @@ fn number(text: &str) -> Result<u16, String> {
         )),
     }
 }
+
+/// A meter to simulate and its units: `pqm`, `pqm=17,18`, `./mine.toml=1`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MeterUnits {
+    /// A name or a profile file.
+    pub meter: String,
+    /// The units, when any were given.
+    pub units: Option<Units>,
+}
+
+impl FromStr for MeterUnits {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let whole = || Self {
+            meter: text.to_owned(),
+            units: None,
+        };
+        let Some((meter, units)) = text.rsplit_once('=') else {
+            return Ok(whole());
+        };
+        match units.parse::<Units>() {
+            // A file may have any name.
+            Err(_) if units.contains(std::path::is_separator) => Ok(whole()),
+            Err(_) if has_ending(units) => Ok(whole()),
+            Err(problem) => Err(problem),
+            Ok(units) if units.0.contains(&0) => {
+                Err("unit 0 is the broadcast address, which no meter answers".to_owned())
+            }
+            Ok(units) => Ok(Self {
+                meter: meter.to_owned(),
+                units: Some(units),
+            }),
+        }
+    }
+}
+
+fn has_ending(name: &str) -> bool {
+    std::path::Path::new(name)
+        .extension()
+        .is_some_and(|ending| ending == "toml")
+}

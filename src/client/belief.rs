@@ -252,6 +252,9 @@ impl<'a> Expectation<'a> {
                     let (found, asked) = (values.count(), range.count());
                     format!("{found} registers, and {asked} asked for")
                 }
+                (Request::ReturnQueryData(sent), Response::QueryData(found)) => {
+                    format!("0x{found:04X}, and 0x{sent:04X} was sent")
+                }
                 (_, response) => format!("an answer to {}", response.function()),
             },
         }

@@ -9,6 +9,9 @@ pub const MOST_FRAME_BYTES: usize = 256;
 /// Bytes around a data unit: the unit before it, the CRC after it.
 pub const FRAME_OVERHEAD: usize = 3;
 
+/// The most bytes a data unit has (AP 4.1).
+pub const MOST_DATA_BYTES: usize = MOST_FRAME_BYTES - FRAME_OVERHEAD;
+
 /// Bytes of an exception response: unit, function, code, CRC (AP 7).
 pub const EXCEPTION_BYTES: usize = 5;
 

@@ -1,4 +1,4 @@
-//! Modbus RTU as bytes: pure functions between frames and typed values.
+//! Modbus as bytes: pure functions between frames and typed values.
 //!
 //! Nothing here reads a clock, a port or a log, and nothing here imports the rest of the crate.
 //!
@@ -8,6 +8,7 @@
 //! * [`request`] and [`reply`]: protocol data units in both directions.
 //! * [`length`]: how long each frame is, per function and direction.
 //! * [`rtu`]: unit and CRC around a data unit.
+//! * [`mbap`]: the header of Modbus TCP before a data unit.
 //! * [`value`]: registers as numbers, text, dates and times.
 //!
 //! Sources: "Modbus Application Protocol Specification V1.1b3" (AP below) and "Modbus over Serial
@@ -19,6 +20,7 @@ mod error;
 pub mod exception;
 pub mod function;
 pub mod length;
+pub mod mbap;
 pub mod registers;
 pub mod reply;
 pub mod request;

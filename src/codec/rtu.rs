@@ -7,7 +7,7 @@ use crc::{CRC_16_MODBUS, Crc};
 use super::address::{Broadcast, Unit, UnitRange};
 use super::cursor;
 use super::error::DecodeError;
-use super::length::{FRAME_OVERHEAD, MOST_FRAME_BYTES};
+use super::length::{FRAME_OVERHEAD, MOST_DATA_BYTES, MOST_FRAME_BYTES};
 use super::reply::Reply;
 use super::request::{Request, Write};
 
@@ -23,7 +23,7 @@ pub fn check(body: &[u8]) -> [u8; 2] {
 ///
 /// It is never longer than the 256 bytes of the standard: it is made of a request or a reply, and
 /// the longest of each hold 250 bytes of registers ([`super::ReadValues`]) behind 2 others, or 246
-/// ([`super::RegisterBlock`]) behind 6. Unit and CRC make that 255.
+/// ([`super::RegisterBlock`]) behind 6. Unit and CRC make that 255. [`seal`] cuts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame(Vec<u8>);
 
@@ -86,6 +86,12 @@ pub fn encode_broadcast(_: Broadcast, write: &Write) -> Frame {
 /// The frame of a unit's reply.
 pub fn encode_reply(unit: Unit, reply: &Reply) -> Frame {
     Frame::new(unit.get(), |bytes| reply.encode(bytes))
+}
+
+/// The frame of a data unit as it is, right or wrong, of at most 253 bytes; more are cut off.
+pub fn seal(address: u8, data_unit: &[u8]) -> Frame {
+    let data_unit = data_unit.get(..MOST_DATA_BYTES).unwrap_or(data_unit);
+    Frame::new(address, |bytes| bytes.extend_from_slice(data_unit))
 }
 
 /// Checks length and CRC and splits a frame into its address byte and its data unit.

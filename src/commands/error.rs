@@ -4,11 +4,14 @@ use std::io;
 
 use thiserror::Error;
 
-use crate::codec::AddressError;
+use crate::codec::{AddressError, Unit};
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
+use crate::sim::values::ValuesError;
+use crate::transport::faulty::FaultScriptError;
+use crate::transport::listen::ListenError;
 use crate::transport::ports::ListError;
-use crate::transport::{OpenError, TransportError};
+use crate::transport::{OpenError, PtyError, TransportError};
 
 /// Why a command cannot do its work at all.
 #[derive(Debug, Error)]
@@ -48,7 +51,7 @@ pub enum CommandError {
         /// What was named.
         port: String,
     },
-    /// The meter does not read with this function.
+    /// The meter does not have this function.
     #[error("{meter} does not answer function {code:02}")]
     Function {
         /// The meter.
@@ -71,6 +74,53 @@ pub enum CommandError {
     /// The port was lost before anything was read.
     #[error(transparent)]
     Lost(#[from] TransportError),
+    /// A place where no meter can be simulated.
+    #[error("port {port} is no place for a simulated meter")]
+    NoPlace {
+        /// What was named.
+        port: String,
+    },
+    /// Two simulated meters of one unit.
+    #[error("unit {unit} is to be both {first} and {second}")]
+    UnitTwice {
+        /// The unit.
+        unit: Unit,
+        /// The meter that has it.
+        first: String,
+        /// The meter that is to have it as well.
+        second: String,
+    },
+    /// There is no pty.
+    #[error(transparent)]
+    Pty(#[from] PtyError),
+    /// Nobody can connect.
+    #[error(transparent)]
+    Listen(#[from] ListenError),
+    /// The values to be simulated are wrong.
+    #[error(transparent)]
+    Values(#[from] ValuesError),
+    /// A fault rule is none.
+    #[error("{}{problem}", .file.as_ref().map(|file| format!("{file}: ")).unwrap_or_default())]
+    Faults {
+        /// The file it is from, if it is from one.
+        file: Option<String>,
+        /// What is wrong with it.
+        problem: Box<FaultScriptError>,
+    },
+    /// The file of fault rules cannot be read.
+    #[error("the fault rules in {file} cannot be read")]
+    FaultsUnreadable {
+        /// The file.
+        file: String,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A fault that cannot be shown to clients of Modbus TCP.
+    #[error("fault rule '{rule}' leaves no whole frame, and Modbus TCP carries no other")]
+    FaultNotShown {
+        /// The rule.
+        rule: String,
+    },
     /// The ports cannot be listed.
     #[error(transparent)]
     Ports(#[from] ListError),

@@ -9,7 +9,7 @@ use super::CommandError;
 use crate::cli::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
 use crate::client::{Client, Echo, Patience, QueryData, Ways};
 use crate::codec::FunctionCode;
-use crate::profile::{Limits, Profile};
+use crate::profile::{Limits, LoopbackData, Profile};
 use crate::sim::SimulatedLine;
 use crate::transport::serial::Serial;
 use crate::transport::traced::Traced;
@@ -34,22 +34,8 @@ impl<'a> LinePlan<'a> {
     /// What was typed wins over the meter's factory setting, and that over 9600 8N1.
     pub(super) fn new(arguments: &'a LineArguments, profile: Option<&Profile>) -> Self {
         let factory = profile.map_or_else(LineSettings::default, |profile| profile.line);
-        let settings = LineSettings {
-            baud: arguments.baud.unwrap_or(factory.baud),
-            parity: arguments
-                .parity
-                .map_or(factory.parity, |parity| match parity {
-                    ParityChoice::None => Parity::None,
-                    ParityChoice::Even => Parity::Even,
-                    ParityChoice::Odd => Parity::Odd,
-                }),
-            stop_bits: arguments
-                .stop_bits
-                .map_or(factory.stop_bits, |bits| match bits {
-                    StopBitsChoice::One => StopBits::One,
-                    StopBitsChoice::Two => StopBits::Two,
-                }),
-        };
+        let (baud, parity) = (arguments.baud, arguments.parity);
+        let settings = settings(baud, parity, arguments.stop_bits, factory);
         Self {
             arguments,
             settings,
@@ -61,7 +47,8 @@ impl<'a> LinePlan<'a> {
         format!("{} at {}", self.port(), self.settings)
     }
 
-    fn port(&self) -> &str {
+    /// The port as it was named; empty when none was.
+    pub(super) fn port(&self) -> &str {
         self.arguments.port.as_deref().unwrap_or_default()
     }
 
@@ -77,13 +64,30 @@ impl<'a> LinePlan<'a> {
                 loopback: limits
                     .functions
                     .contains(&FunctionCode::Diagnostics)
-                    .then_some(QueryData::Zero),
+                    .then_some(match limits.loopback_data {
+                        LoopbackData::Any => QueryData::Any,
+                        LoopbackData::Zero => QueryData::Zero,
+                    }),
             },
         }
     }
 
     /// Opens the port and returns a client on it.
     pub(super) fn open(&self) -> Result<Client, CommandError> {
+        self.open_with(self.echo())
+    }
+
+    /// What was said of echoes.
+    pub(super) fn echo(&self) -> Echo {
+        match self.arguments.echo {
+            EchoChoice::Auto => Echo::Auto,
+            EchoChoice::On => Echo::On,
+            EchoChoice::Off => Echo::Off,
+        }
+    }
+
+    /// The same with another way to take echoes.
+    pub(super) fn open_with(&self, echo: Echo) -> Result<Client, CommandError> {
         let clock: Arc<dyn Clock> = Arc::new(SystemClock::new());
         let transport = self.transport(&clock)?;
         if !self.arguments.settle.is_zero() {
@@ -93,11 +97,6 @@ impl<'a> LinePlan<'a> {
             Box::new(Traced::new(transport, Arc::clone(&clock)))
         } else {
             transport
-        };
-        let echo = match self.arguments.echo {
-            EchoChoice::Auto => Echo::Auto,
-            EchoChoice::On => Echo::On,
-            EchoChoice::Off => Echo::Off,
         };
         info!("opened {}", self.name());
         let line = Line::new(transport, clock, Timing::Paced(self.settings))?;
@@ -121,20 +120,53 @@ impl<'a> LinePlan<'a> {
             let port = port.to_owned();
             return Err(CommandError::Tcp { port });
         }
-        let give_up = clock.now() + self.arguments.wait;
-        let mut is_told = false;
-        loop {
-            match Serial::open(port, self.settings) {
-                Ok(serial) => return Ok(Box::new(serial)),
-                Err(OpenError::Busy { .. }) if clock.now() < give_up => {
-                    if !is_told {
-                        info!("port {port} is in use, waiting for it");
-                        is_told = true;
-                    }
-                    clock.sleep(TRY_AGAIN);
+        let serial = while_busy(&**clock, port, self.arguments.wait, || {
+            Serial::open(port, self.settings)
+        });
+        Ok(Box::new(serial?))
+    }
+}
+
+/// What was typed wins over the meter's factory setting.
+pub(super) fn settings(
+    baud: Option<u32>,
+    parity: Option<ParityChoice>,
+    stop_bits: Option<StopBitsChoice>,
+    factory: LineSettings,
+) -> LineSettings {
+    LineSettings {
+        baud: baud.unwrap_or(factory.baud),
+        parity: parity.map_or(factory.parity, |parity| match parity {
+            ParityChoice::None => Parity::None,
+            ParityChoice::Even => Parity::Even,
+            ParityChoice::Odd => Parity::Odd,
+        }),
+        stop_bits: stop_bits.map_or(factory.stop_bits, |bits| match bits {
+            StopBitsChoice::One => StopBits::One,
+            StopBitsChoice::Two => StopBits::Two,
+        }),
+    }
+}
+
+/// Opens a port, again and again while another program holds it, at most for `wait`.
+pub(super) fn while_busy<T>(
+    clock: &dyn Clock,
+    port: &str,
+    wait: Duration,
+    mut open: impl FnMut() -> Result<T, OpenError>,
+) -> Result<T, OpenError> {
+    let give_up = clock.now() + wait;
+    let mut is_told = false;
+    loop {
+        match open() {
+            Err(OpenError::Busy { .. }) if clock.now() < give_up => {
+                if !is_told {
+                    info!("port {port} is in use, waiting for it");
+                    is_told = true;
                 }
-                Err(error) => return Err(error.with_holders().into()),
+                clock.sleep(TRY_AGAIN);
             }
+            result => return result.map_err(OpenError::with_holders),
         }
     }
 }

@@ -14,12 +14,16 @@ use crate::output::escape;
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
 use crate::readings::Trouble;
-use crate::transport::OpenError;
 use crate::transport::holder::Holders;
+use crate::transport::listen::ListenError;
+use crate::transport::{OpenError, PtyError};
 
 /// What to make of a port that was lost.
 const LOST_HINT: &str = "the adapter was unplugged, or the other side hung up; /dev/serial/by-id \
                          has a name that stays when it comes back";
+
+/// Where meters can be simulated.
+const PLACES: &str = "a name for a pty, a serial port, rtu+tcp://host:port or tcp://host:port";
 
 /// Prints what there is to say to a command line that nothing comes of: help on stdout, errors on
 /// stderr.
@@ -104,6 +108,18 @@ impl Report {
         }
     }
 
+    /// Prints why a unit cannot be asked any more.
+    pub(super) fn failure(&mut self, place: &str, failure: &Failure) {
+        say(format_args!("error: {place}: {failure}"));
+        causes(failure);
+        self.hint(failure_hint(failure).map(str::to_owned));
+    }
+
+    /// Prints what to try.
+    pub(super) fn advise(&mut self, hint: &str) {
+        self.hint(Some(hint.to_owned()));
+    }
+
     /// Prints something a person may want to know although all is well.
     pub(super) fn remark(&self, text: &str) {
         if !self.quiet {
@@ -155,8 +171,19 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::NoPort
         | CommandError::UnknownSimulation { .. }
         | CommandError::Find(_)
-        | CommandError::Tcp { .. } => ExitCode::Usage,
-        CommandError::Open(_) | CommandError::Lost(_) | CommandError::Ports(_) => ExitCode::Port,
+        | CommandError::Tcp { .. }
+        | CommandError::NoPlace { .. }
+        | CommandError::UnitTwice { .. }
+        | CommandError::Listen(ListenError::Address { .. })
+        | CommandError::Values(_)
+        | CommandError::Faults { .. }
+        | CommandError::FaultsUnreadable { .. }
+        | CommandError::FaultNotShown { .. } => ExitCode::Usage,
+        CommandError::Open(_)
+        | CommandError::Lost(_)
+        | CommandError::Ports(_)
+        | CommandError::Pty(_)
+        | CommandError::Listen(_) => ExitCode::Port,
         CommandError::Output(_) => ExitCode::Output,
     }
 }
@@ -171,6 +198,9 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
+        CommandError::Function { code: 8, .. } => {
+            "without --meter it is sent all the same, and the meter may refuse it"
+        }
         CommandError::Function { .. } => {
             "the other function reads its registers: see --function, or 3xxxx and 4xxxx with \
              --numbering modicon"
@@ -182,6 +212,18 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::UnknownSimulation { .. } => "the simulated line is named sim:",
         CommandError::Find(FindError::Misnamed { .. }) => "give both the same name",
         CommandError::Tcp { .. } => "give a serial port, or sim: for the simulated line",
+        CommandError::NoPlace { .. } => PLACES,
+        CommandError::Listen(ListenError::Address { .. }) => {
+            "an address is host:port, such as 127.0.0.1:5020; port 0 is any that is free"
+        }
+        CommandError::Listen(ListenError::InUse { .. }) => {
+            "take another port; port 0 is any that is free"
+        }
+        CommandError::UnitTwice { .. } => "units are given with the meter: --meter pqm=17,18",
+        CommandError::Pty(PtyError::Exists { .. }) => {
+            "a pty needs a name that is free; one that was killed leaves its own behind"
+        }
+        CommandError::FaultNotShown { .. } => "rtu+tcp:// and ptys show all faults",
         CommandError::Open(error) => return open_hint(error),
         CommandError::Lost(_) => LOST_HINT,
         _ => return None,
@@ -246,7 +288,7 @@ fn open_hint(error: &OpenError) -> Option<String> {
     Some(text.to_owned())
 }
 
-fn failure_hint(failure: &Failure) -> Option<&'static str> {
+pub(super) fn failure_hint(failure: &Failure) -> Option<&'static str> {
     Some(match failure {
         Failure::Silence { .. } => {
             "check --unit, --baud, --parity and --stop-bits against the meter, then power and \

@@ -10,9 +10,11 @@
 //! * [`selector`]: what a person types to choose points or raw registers.
 //! * [`plan`]: which requests fetch a set of points in the least time on this line.
 //! * [`value`]: what a point's registers mean.
+//! * [`encoding`]: which registers mean that.
 
 pub mod advice;
 pub mod builtin;
+pub mod encoding;
 pub mod error;
 pub mod find;
 pub mod format;
@@ -27,8 +29,9 @@ pub mod selector;
 pub mod setup;
 pub mod value;
 
+pub use encoding::EncodeError;
 pub use error::ProfileError;
-pub use model::{Limits, Profile};
+pub use model::{Limits, LoopbackData, Profile};
 
 pub use plan::Plan;
 pub use point::Point;

@@ -119,7 +119,7 @@ pub struct OnlyWith {
 
 impl OnlyWith {
     /// Whether what the other point holds will do; `None` is a value that is no number.
-    fn means_something(&self, setting: Option<i128>) -> bool {
+    pub(super) fn means_something(&self, setting: Option<i128>) -> bool {
         let Some(codes) = &self.codes else {
             return true;
         };

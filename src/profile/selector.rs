@@ -318,7 +318,7 @@ fn groups(profile: &Profile) -> Vec<String> {
 }
 
 /// Up to three names that look like `name`, the nearest first.
-fn near(name: &str, profile: &Profile) -> Vec<String> {
+pub fn near(name: &str, profile: &Profile) -> Vec<String> {
     const ALIKE: f64 = 0.75;
     let mut scored: Vec<(f64, &str)> = profile
         .points

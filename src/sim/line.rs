@@ -9,13 +9,14 @@ use crate::codec::{Unit, UnitRange};
 use crate::transport::{Clock, OpenError, Transport, TransportError};
 
 /// A line inside the program. What is sent into it is heard by every meter on it at once, and
-/// their answers can be received at once: pace and silence are the matter of
-/// [`crate::transport::Line`].
+/// their answers can be received at once, or after a time that the meters take: pace and silence are
+/// the matter of [`crate::transport::Line`].
 pub struct SimulatedLine {
     meters: Vec<Meter>,
     clock: Arc<dyn Clock>,
-    /// What the meters have said and nobody has received yet.
-    answers: VecDeque<u8>,
+    answer_time: Duration,
+    /// What the meters have said and nobody has received yet, and when each of it begins.
+    answers: VecDeque<(Duration, Vec<u8>)>,
 }
 
 impl SimulatedLine {
@@ -53,8 +54,21 @@ impl SimulatedLine {
         Self {
             meters,
             clock,
+            answer_time: Duration::ZERO,
             answers: VecDeque::new(),
         }
+    }
+
+    /// The same line with meters that take so long before they answer.
+    #[must_use]
+    pub const fn with_answer_time(mut self, answer_time: Duration) -> Self {
+        self.answer_time = answer_time;
+        self
+    }
+
+    /// When the next answer begins, on the clock; `None` when there is none to come.
+    fn next_due(&self) -> Option<Duration> {
+        self.answers.front().map(|(due, _)| *due)
     }
 }
 
@@ -63,28 +77,43 @@ impl Transport for SimulatedLine {
         let now = self.clock.utc_now();
         for meter in &self.meters {
             if let Some(answer) = meter.answer(frame, now) {
-                self.answers.extend(answer.as_bytes());
+                let due = self.clock.now().saturating_add(self.answer_time);
+                self.answers.push_back((due, answer.as_bytes().to_vec()));
             }
         }
         Ok(())
     }
 
-    /// Hands over what has been answered; without an answer the whole of `wait` passes on the
-    /// clock.
+    /// Hands over what has been answered; as long as that is nothing, time passes on the clock, at
+    /// most `wait`.
     fn receive(&mut self, into: &mut [u8], wait: Duration) -> Result<usize, TransportError> {
-        if self.answers.is_empty() {
-            self.clock.sleep(wait);
-            return Ok(0);
+        let now = self.clock.now();
+        let left = self.next_due().map(|due| due.saturating_sub(now));
+        let left = left.unwrap_or(Duration::MAX);
+        if !left.is_zero() {
+            self.clock.sleep(left.min(wait));
         }
-        let count = self.answers.len().min(into.len());
-        for (place, byte) in into.iter_mut().zip(self.answers.drain(..count)) {
-            *place = byte;
+        let now = self.clock.now();
+        let mut count = 0;
+        while let Some((due, answer)) = self.answers.front_mut()
+            && *due <= now
+            && let Some(room) = into.get_mut(count..).filter(|room| !room.is_empty())
+        {
+            let taken = answer.len().min(room.len());
+            for (place, byte) in room.iter_mut().zip(answer.drain(..taken)) {
+                *place = byte;
+            }
+            count += taken;
+            if answer.is_empty() {
+                self.answers.pop_front();
+            }
         }
         Ok(count)
     }
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
-        self.answers.clear();
+        let now = self.clock.now();
+        self.answers.retain(|(due, _)| *due > now);
         Ok(())
     }
 

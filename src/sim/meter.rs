@@ -2,12 +2,16 @@
 
 mod answering;
 mod bank;
+mod fixed;
 
 use std::sync::LazyLock;
 
 use jiff::Timestamp;
 
+pub use self::fixed::{Setting, SettingError};
+
 use self::answering::Refusal;
+use self::fixed::Fixed;
 use super::em2x::Em2x;
 use super::model::Model;
 use super::pm290::Pm290;
@@ -19,6 +23,8 @@ use crate::profile::{Profile, builtin};
 pub struct Meter {
     unit: Unit,
     kind: LazyLock<Kind, Box<dyn FnOnce() -> Kind + Send>>,
+    /// What registers hold whatever the model says.
+    fixed: Fixed,
 }
 
 /// What it is a meter of.
@@ -40,12 +46,15 @@ impl Meter {
                 let (profile, model) = make();
                 Kind { profile, model }
             })),
+            fixed: Fixed::default(),
         }
     }
 
     /// A PQM with the built-in profile; its load comes from `seed`.
     pub fn pqm(unit: Unit, seed: u64) -> Self {
-        Self::builtin(unit, "pqm", move || Box::new(Pqm::new(seed)))
+        Self::builtin(unit, "pqm", move || {
+            Box::new(Pqm::new(seed).with_unit(unit))
+        })
     }
 
     /// A PM290 with the built-in profile; its load comes from `seed`.
@@ -87,6 +96,15 @@ impl Meter {
         &self.kind.profile
     }
 
+    /// Makes registers hold what they are given from now on, whatever the model says; the last one
+    /// counts where several settings are of one point. Scales that depend on the setup are those of
+    /// the meter at `now`, with the setup that is given.
+    ///
+    /// What cannot be held is returned, each by its index in `settings`; the others are.
+    pub fn fix(&mut self, settings: &[Setting], now: Timestamp) -> Vec<(usize, SettingError)> {
+        self.kind.fix(&mut self.fixed, settings, now)
+    }
+
     /// What it answers to the bytes it heard, at the time of day `now`. `None` is silence: the
     /// CRC is wrong, the frame is cut, or it is for another unit or for all of them.
     pub fn answer(&self, frame: &[u8], now: Timestamp) -> Option<Frame> {
@@ -96,7 +114,7 @@ impl Meter {
         }
         // From 80h on it is the exception response of somebody with the same number.
         let function = FunctionCode::try_from(*data_unit.first()?).ok()?;
-        let reply = match self.kind.obey(function, data_unit, now) {
+        let reply = match self.kind.obey(function, data_unit, &self.fixed, now) {
             Ok(response) => Reply::Normal(response),
             Err(Refusal::Exception(code)) => Reply::Exception { function, code },
             Err(Refusal::Silence) => return None,

@@ -11,10 +11,14 @@
 //!   registers.
 //! * [`model`]: what a kind of meter holds, and how it differs from the others.
 //! * [`meter`]: requests in, answers, exceptions or silence out.
+//! * [`kinds`]: which model stands behind which profile.
+//! * [`values`]: a file of values that meters hold whatever the load does.
 //! * [`line`](mod@line): the transport.
+//! * [`server`]: the line with clients of others on it.
 
 pub mod em2x;
 pub mod history;
+pub mod kinds;
 pub mod line;
 pub mod load;
 pub mod meter;
@@ -22,6 +26,8 @@ pub mod model;
 pub mod pm290;
 mod powers;
 pub mod pqm;
+pub mod server;
+pub mod values;
 pub mod wave;
 mod words;
 
@@ -29,6 +35,7 @@ pub use em2x::Em2x;
 pub use line::SimulatedLine;
 pub use load::{Installation, Load};
 pub use meter::Meter;
-pub use model::{Content, Measured, Model};
+pub use model::{Blank, Content, Measured, Model};
 pub use pm290::Pm290;
 pub use pqm::Pqm;
+pub use server::Server;

@@ -21,11 +21,6 @@ pub trait Model: Send + Sync {
         0
     }
 
-    /// Whether function 08 sends this word back.
-    fn echoes(&self, _word: u16) -> bool {
-        true
-    }
-
     /// Whether it is too busy for a request that touches these registers.
     fn is_busy(&self, _range: RegisterRange, _now: Timestamp) -> bool {
         false
@@ -48,4 +43,20 @@ pub enum Content {
     Number(i128),
     /// Text, a date, a time.
     Other(Raw),
+}
+
+/// A model that knows nothing: all registers hold 0.
+#[derive(Debug, Clone, Copy)]
+pub struct Blank;
+
+impl Model for Blank {
+    fn measure(&self, _now: Timestamp) -> Box<dyn Measured + '_> {
+        Box::new(Self)
+    }
+}
+
+impl Measured for Blank {
+    fn content(&self, _point: &str) -> Option<Content> {
+        None
+    }
 }

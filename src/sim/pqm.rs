@@ -24,6 +24,7 @@ use super::model::{Content, Measured, Model};
 use super::powers::Powers;
 use super::wave::{Moment, Random};
 use super::words::{counter, rounded, text};
+use crate::codec::Unit;
 
 /// What functions 03 and 04 can read: product information; user map and actual values; setpoints. The
 /// command area behind the first is write only.
@@ -44,6 +45,8 @@ pub struct Pqm {
     load: Load,
     signals: Signals,
     serial_number: String,
+    /// What its setpoint says.
+    unit: u8,
 }
 
 impl Pqm {
@@ -56,7 +59,15 @@ impl Pqm {
             load: Load::new(Installation::FACTORY, seed),
             signals: Signals::new(&mut random),
             serial_number: format!("C{number:07}"),
+            unit: 17,
         }
+    }
+
+    /// The same meter set up as another unit; without that its setpoint says 17.
+    #[must_use]
+    pub const fn with_unit(mut self, unit: Unit) -> Self {
+        self.unit = unit.get();
+        self
     }
 
     fn read(&self, now: Timestamp) -> Reading<'_> {
@@ -77,11 +88,6 @@ impl Pqm {
 impl Model for Pqm {
     fn areas(&self) -> &[RangeInclusive<u16>] {
         &AREAS
-    }
-
-    /// Zeros alone (manual page 191).
-    fn echoes(&self, word: u16) -> bool {
-        word == 0
     }
 
     fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_> {
@@ -127,6 +133,7 @@ impl Reading<'_> {
                 Content::Number(0)
             }
             // Eight characters (F10).
+            "modbus_address" => Content::Number(self.pqm.unit.into()),
             "serial_number" => text(&self.pqm.serial_number),
             "manufacture_date" => date(civil::date(2006, 3, 14)),
             "calibration_date" => date(civil::date(2006, 3, 21)),

@@ -108,3 +108,30 @@ impl OpenError {
         }
     }
 }
+
+/// Why there is no pty.
+#[derive(Debug, Error)]
+pub enum PtyError {
+    /// The system makes none.
+    #[error("no pty can be made")]
+    None(#[source] io::Error),
+    /// The system knows none.
+    #[error("this system has no ptys")]
+    Unknown,
+    /// There is something of that name.
+    #[error("{path} exists already, as {what}")]
+    Exists {
+        /// The name.
+        path: String,
+        /// What it is.
+        what: &'static str,
+    },
+    /// The name cannot be given.
+    #[error("the pty cannot be named {path}")]
+    Name {
+        /// The name.
+        path: String,
+        /// What the system said.
+        source: io::Error,
+    },
+}

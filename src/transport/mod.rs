@@ -2,17 +2,24 @@
 //!
 //! A [`Transport`] is a medium: the [`serial`] port, or the simulated line in [`crate::sim`].
 //! [`traced`] wraps any of them and shows the bytes, [`faulty`] spoils them. [`line::Line`] adds what
-//! the standard asks of everybody on a wire: silence before each frame. [`clock`] is where time comes from, so that all
-//! of this runs on a fake one in tests. [`ports`] tells which serial ports there are, [`holder`] who
-//! has one open; `lock` sees whether one is held before it is opened.
+//! the standard asks of everybody on a wire: silence before each frame. [`clock`] is where time comes
+//! from, so that all of this runs on a fake one in tests. [`ports`] tells which serial ports there
+//! are, [`holder`] who has one open; `lock` sees whether one is held before it is opened.
+//!
+//! A server has its clients on an [`Outside`]: a serial port, a pty or sockets ([`outside`],
+//! `pty`, [`listen`]).
 
 pub mod clock;
 pub mod error;
 pub mod faulty;
 pub mod holder;
 pub mod line;
+pub mod listen;
 mod lock;
+pub mod outside;
 pub mod ports;
+#[cfg(unix)]
+pub mod pty;
 pub mod serial;
 pub mod settings;
 pub mod traced;
@@ -20,9 +27,10 @@ pub mod traced;
 use std::time::Duration;
 
 pub use clock::{Clock, SystemClock};
-pub use error::{OpenError, TransportError};
+pub use error::{OpenError, PtyError, TransportError};
 pub use faulty::{FaultScript, Faulty};
 pub use line::Line;
+pub use outside::{Afterwards, ClientId, Heard, Outside};
 pub use settings::{LineSettings, Parity, StopBits, Timing};
 
 /// A medium that carries bytes both ways.

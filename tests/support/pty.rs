@@ -37,7 +37,12 @@ pub(crate) struct PtyMeter {
 
 impl PtyMeter {
     /// A meter that does with every request what `behaviour` says.
-    pub(crate) fn new(mut behaviour: Box<Behaviour>) -> Self {
+    pub(crate) fn new(behaviour: Box<Behaviour>) -> Self {
+        Self::hanging_up(behaviour, usize::MAX)
+    }
+
+    /// The same on a line that hangs up in place of an answer to this request, counted from 1.
+    pub(crate) fn hanging_up(mut behaviour: Box<Behaviour>, last: usize) -> Self {
         let (mut master, slave, path) = pair().expect("a pty pair");
         let seen = Arc::new(Mutex::new(Vec::new()));
         let requests = Arc::clone(&seen);
@@ -58,6 +63,9 @@ impl PtyMeter {
                     }
                     let mut requests = requests.lock().expect("nobody panicked");
                     requests.push(request.clone());
+                    if requests.len() == last {
+                        return;
+                    }
                     drop(requests);
                     let _ = master.write_all(&behaviour(&request));
                     answers.fetch_add(1, Ordering::SeqCst);

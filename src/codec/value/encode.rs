@@ -62,11 +62,8 @@ fn bytes(high: i8, low: i8) -> Option<u16> {
 /// Two characters a register, in address order; only the bytes can be swapped.
 fn text_words(characters: u8, order: ByteOrder, text: &str) -> Option<Vec<u16>> {
     let count = usize::from(characters);
-    if !text.is_ascii() || text.len() > count {
-        return None;
-    }
     // A last byte behind an odd number of characters is no part of the text.
-    let mut padded = text.as_bytes().to_vec();
+    let mut padded = bytes_of(text).filter(|bytes| bytes.len() <= count)?;
     padded.resize(count, b' ');
     padded.resize(count.next_multiple_of(2), 0);
     let words = padded.chunks_exact(2).map(|pair| {
@@ -78,6 +75,29 @@ fn text_words(characters: u8, order: ByteOrder, text: &str) -> Option<Vec<u16>> 
         }
     });
     Some(words.collect())
+}
+
+/// The bytes that show as this text: ASCII, and `\xE9` for what is not.
+fn bytes_of(text: &str) -> Option<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(character) = rest.chars().next() {
+        if let Some(byte) = shown_byte(rest) {
+            bytes.push(byte);
+            rest = rest.get(4..)?;
+        } else {
+            bytes.push(u8::try_from(character).ok().filter(u8::is_ascii)?);
+            rest = rest.get(1..)?;
+        }
+    }
+    Some(bytes)
+}
+
+/// The byte that is not ASCII and shows as the first four characters.
+fn shown_byte(text: &str) -> Option<u8> {
+    let digits = text.strip_prefix("\\x")?.get(..2)?;
+    let byte = u8::from_str_radix(digits, 16).ok()?;
+    (!byte.is_ascii() && format!("{byte:02X}") == digits).then_some(byte)
 }
 
 /// Writes an integer into registers; the inverse of [`decode`](super::decode) for integers, hex and

@@ -3,6 +3,7 @@
 use jiff::Timestamp;
 
 use super::Kind;
+use super::fixed::Fixed;
 use crate::codec::{
     AddressError, DecodeError, ExceptionCode, FunctionCode, ReadValues, RegisterRange, Request,
     Response, Write,
@@ -21,6 +22,7 @@ impl Kind {
         &self,
         function: FunctionCode,
         data_unit: &[u8],
+        fixed: &Fixed,
         now: Timestamp,
     ) -> Result<Response, Refusal> {
         // Functions 20 and 21, which a real PM290 has, are in no profile.
@@ -39,7 +41,7 @@ impl Kind {
             Request::Read { function, range } => Ok(Response::Registers {
                 function,
                 // As many as the range, which is never too long for a read.
-                values: ReadValues::new(self.read(function, range, now)?)
+                values: ReadValues::new(self.read(function, range, fixed, now)?)
                     .map_err(DecodeError::from)?,
             }),
             Request::ReadExceptionStatus => Ok(Response::ExceptionStatus(self.model.status(now))),
@@ -57,7 +59,7 @@ impl Kind {
         match request {
             Request::Read { range, .. } => range.count() <= limits.read_registers,
             Request::Write(Write::Registers(block)) => block.count() <= limits.write_registers,
-            Request::ReturnQueryData(word) => self.model.echoes(*word),
+            Request::ReturnQueryData(word) => limits.loopback_data.takes(*word),
             Request::Write(_) | Request::ReadExceptionStatus => true,
         }
     }

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use jiff::Timestamp;
 
 use super::Kind;
+use super::fixed::Fixed;
 use crate::codec::value::{encode, encode_integer};
 use crate::codec::{ExceptionCode, ReadFunction, RegisterRange};
 use crate::profile::Point;
@@ -16,6 +17,7 @@ impl Kind {
         &self,
         function: ReadFunction,
         range: RegisterRange,
+        fixed: &Fixed,
         now: Timestamp,
     ) -> Result<Vec<u16>, ExceptionCode> {
         let points = self
@@ -24,9 +26,10 @@ impl Kind {
         let measured = self.model.measure(now);
         let first = u32::from(range.start().get());
         let mut values = vec![0; usize::from(range.count())];
+        fixed.lay(range.start().get(), &mut values);
         for point in points {
             let start = u32::from(point.range.start().get());
-            for (address, word) in (start..).zip(registers(point, measured.as_ref())) {
+            for (address, word) in (start..).zip(fixed.registers(point, measured.as_ref())) {
                 // Words of the point before or after the range have no place in it.
                 if let Some(index) = address.checked_sub(first)
                     && let Some(value) = values.get_mut(index as usize)
@@ -59,7 +62,7 @@ impl Kind {
             .then_some(ordinary)
     }
 
-    fn is_in_one_area(&self, range: RegisterRange) -> bool {
+    pub(super) fn is_in_one_area(&self, range: RegisterRange) -> bool {
         let within = |area: &RangeInclusive<u16>| {
             *area.start() <= range.start().get() && range.end() <= u32::from(*area.end()) + 1
         };
@@ -86,7 +89,7 @@ fn is_covered(range: RegisterRange, points: &[&Point]) -> bool {
 }
 
 /// The registers of a point; none when the model has nothing that fits them.
-fn registers(point: &Point, measured: &dyn Measured) -> Vec<u16> {
+pub(super) fn registers(point: &Point, measured: &dyn Measured) -> Vec<u16> {
     match measured.content(&point.name) {
         Some(Content::Number(number)) => encode_integer(point.kind, point.order, number),
         Some(Content::Other(value)) => encode(point.kind, point.order, &value),

@@ -23,8 +23,6 @@ pub(super) fn content(point: &str) -> Option<Content> {
 
 /// What is set otherwise than in the factory, so that it fits what is measured.
 const SETTINGS: &[(&str, u16)] = &[
-    // The unit that answers on the simulated line.
-    ("modbus_address", 17),
     // 600 A at 600 V, wired directly as a wye; the neutral current is the sum of the others.
     ("ct_primary", 600),
     ("vt_wiring", 2),

@@ -1,9 +1,11 @@
 //! No text stops the program: profiles, selectors and fault rules are read, or refused with a place.
 
+use std::sync::LazyLock;
+
 use meterpoll::profile::advice::advise;
-use meterpoll::profile::builtin;
 use meterpoll::profile::load::load;
 use meterpoll::profile::selector::{Numbering, Purpose, Reading, select};
+use meterpoll::profile::{Profile, builtin};
 use meterpoll::transport::FaultScript;
 
 use super::cursor::Cursor;
@@ -84,9 +86,10 @@ fn loads(text: &str) {
 }
 
 fn selects(text: &str) {
-    let meter = builtin::find("em21").expect("it is built in").profile();
+    static METER: LazyLock<Profile> =
+        LazyLock::new(|| builtin::find("em21").expect("it is built in").profile());
     let words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
-    for profile in [None, Some(&meter)] {
+    for profile in [None, Some(&*METER)] {
         for numbering in [Numbering::Protocol, Numbering::Modicon] {
             for purpose in [Purpose::Read, Purpose::LookUp] {
                 let reading = Reading {

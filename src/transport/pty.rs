@@ -1,0 +1,229 @@
+//! A pseudo terminal whose other end clients open like a serial port.
+//!
+//! Both ends are held: so the line does not hang up while no client has it open, and one that comes
+//! back finds it as it was. What is written while none reads stays there for the next, some
+//! thousand bytes of it; a client throws stale bytes away when it opens a port.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::os::fd::{AsFd, OwnedFd};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
+use rustix::io::{Errno, ioctl_fionread};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+
+use super::outside::{CHUNK, heard_on_line};
+use super::{Afterwards, ClientId, Heard, OpenError, Outside, PtyError, TransportError};
+
+/// After this long what was written has come to the other end, and if it is not there, it was read.
+const ON_ITS_WAY: Duration = Duration::from_millis(100);
+
+/// How often it is looked whether a client has read everything.
+const LOOK_AGAIN: Duration = Duration::from_millis(1);
+
+/// A pty, raw as a serial line is.
+pub struct Pty {
+    ends: Option<Ends>,
+    /// The path of the clients' end.
+    path: String,
+    /// A name of its own that leads there; it goes with the pty.
+    link: Option<PathBuf>,
+}
+
+struct Ends {
+    ours: File,
+    theirs: OwnedFd,
+}
+
+impl Pty {
+    /// Makes a pty.
+    ///
+    /// # Errors
+    /// [`PtyError::None`].
+    pub fn new() -> Result<Self, PtyError> {
+        let (ends, path) = Ends::new().map_err(PtyError::None)?;
+        Ok(Self {
+            ends: Some(ends),
+            path,
+            link: None,
+        })
+    }
+
+    /// Makes a pty that clients find under a name, a symbolic link to it that is removed when this
+    /// is dropped.
+    ///
+    /// # Errors
+    /// [`PtyError`]; nothing of that name may exist.
+    pub fn named(name: &Path) -> Result<Self, PtyError> {
+        let mut pty = Self::new()?;
+        let path = || name.display().to_string();
+        std::os::unix::fs::symlink(&pty.path, name).map_err(|source| match source.kind() {
+            io::ErrorKind::AlreadyExists => PtyError::Exists {
+                path: path(),
+                what: kind_of_file(name),
+            },
+            _ => PtyError::Name {
+                path: path(),
+                source,
+            },
+        })?;
+        pty.link = Some(name.to_owned());
+        Ok(pty)
+    }
+
+    /// What a client opens: the name, else the path of the pty itself, `/dev/pts/5`.
+    pub fn path(&self) -> String {
+        match &self.link {
+            Some(link) => link.display().to_string(),
+            None => self.path.clone(),
+        }
+    }
+
+    fn lost(&self, source: impl Into<io::Error>) -> TransportError {
+        TransportError::Lost {
+            port: self.path(),
+            source: source.into(),
+        }
+    }
+
+    fn ends(&mut self) -> Result<&mut Ends, TransportError> {
+        let lost = self.lost(io::ErrorKind::NotConnected);
+        self.ends.as_mut().ok_or(lost)
+    }
+
+    /// Makes another pty under the same name.
+    fn renew(&mut self, link: &Path) -> io::Result<()> {
+        let (ends, path) = Ends::new()?;
+        self.ends = Some(ends);
+        self.path = path;
+        // In one step, so that a client never finds nothing there.
+        let aside = aside(link);
+        std::os::unix::fs::symlink(&self.path, &aside)?;
+        std::fs::rename(&aside, link).inspect_err(|_| drop(std::fs::remove_file(&aside)))
+    }
+}
+
+impl Drop for Pty {
+    /// Removes the name, unless somebody has put another thing there.
+    fn drop(&mut self) {
+        if let Some(link) = &self.link
+            && std::fs::read_link(link).is_ok_and(|target| target == Path::new(&self.path))
+        {
+            let _ = std::fs::remove_file(link);
+        }
+    }
+}
+
+impl Outside for Pty {
+    fn hear(&mut self, wait: Duration) -> Result<Heard, TransportError> {
+        let mut chunk = [0; CHUNK];
+        match self.ends()?.receive(&mut chunk, wait) {
+            Ok(count) => Ok(heard_on_line(&chunk, count)),
+            Err(error) => Err(self.lost(error)),
+        }
+    }
+
+    fn say(&mut self, _: ClientId, bytes: &[u8]) -> Result<(), TransportError> {
+        match self.ends()?.ours.write(bytes) {
+            Ok(_) => Ok(()),
+            // Nobody reads, and there is no more room: a wire does not wait either.
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => Ok(()),
+            Err(error) => Err(self.lost(error)),
+        }
+    }
+
+    /// Without a name nobody would know the pty that comes after this one.
+    fn hang_up(&mut self, _: ClientId) -> Result<Afterwards, OpenError> {
+        self.ends = None;
+        let Some(link) = self.link.clone() else {
+            return Ok(Afterwards::Closed);
+        };
+        let renewed = self.renew(&link);
+        renewed.map_err(|source| OpenError::Other {
+            port: self.path(),
+            source,
+        })?;
+        Ok(Afterwards::Open)
+    }
+
+    fn finish(&mut self, limit: Duration) {
+        let Some(ends) = &self.ends else {
+            return;
+        };
+        let start = Instant::now();
+        let mut has_come = false;
+        while start.elapsed() < limit {
+            // What was written takes a moment to come to the other end.
+            match ioctl_fionread(&ends.theirs) {
+                Ok(0) if has_come || start.elapsed() >= ON_ITS_WAY => return,
+                Ok(0) => {}
+                Ok(_) => has_come = true,
+                Err(_) => return,
+            }
+            std::thread::sleep(LOOK_AGAIN);
+        }
+    }
+}
+
+impl Ends {
+    /// A raw pty and the path of the clients' end; no child process inherits either end.
+    fn new() -> io::Result<(Self, String)> {
+        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
+        let ours = openpt(flags | OpenptFlags::CLOEXEC)?;
+        grantpt(&ours)?;
+        unlockpt(&ours)?;
+        let path = ptsname(&ours, Vec::new())?;
+        let path = path.into_string().map_err(io::Error::other)?;
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+        let theirs = open(path.as_str(), flags, Mode::empty())?;
+        let mut attributes = tcgetattr(&theirs)?;
+        attributes.make_raw();
+        tcsetattr(&theirs, OptionalActions::Now, &attributes)?;
+        fcntl_setfl(&ours, OFlags::RDWR | OFlags::NONBLOCK)?;
+        let ours = File::from(ours);
+        Ok((Self { ours, theirs }, path))
+    }
+
+    /// 0 when nothing came in time, or a signal did.
+    fn receive(&mut self, into: &mut [u8], wait: Duration) -> io::Result<usize> {
+        // Far more than anybody waits.
+        let wait = Timespec::try_from(wait).unwrap_or(Timespec {
+            tv_sec: 3600,
+            tv_nsec: 0,
+        });
+        let mut waiting = [PollFd::from_borrowed_fd(self.ours.as_fd(), PollFlags::IN)];
+        match poll(&mut waiting, Some(&wait)) {
+            Ok(0) | Err(Errno::INTR) => return Ok(0),
+            Ok(_) => {}
+            Err(error) => return Err(error.into()),
+        }
+        match self.ours.read(into) {
+            Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
+            Ok(count) => Ok(count),
+            Err(error) => match error.kind() {
+                io::ErrorKind::WouldBlock | io::ErrorKind::Interrupted => Ok(0),
+                _ => Err(error),
+            },
+        }
+    }
+}
+
+/// A name beside this one that nobody else takes.
+fn aside(link: &Path) -> PathBuf {
+    let mut name = link.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}", std::process::id()));
+    link.with_file_name(name)
+}
+
+fn kind_of_file(path: &Path) -> &'static str {
+    match path.symlink_metadata().map(|found| found.file_type()) {
+        Ok(kind) if kind.is_dir() => "a directory",
+        Ok(kind) if kind.is_symlink() && !path.exists() => "a link that leads nowhere",
+        Ok(kind) if kind.is_file() => "a file",
+        _ => "something else",
+    }
+}
