@@ -29,6 +29,7 @@ complete -c meterpoll -n "__fish_meterpoll_needs_command" -s v -l verbose -d 'Sa
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -s V -l version -d 'Print version'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "loopback" -d 'Send words to a unit and compare what comes back: is the line good?'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "ports" -d 'List serial ports, without opening any'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
@@ -57,7 +58,7 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s t
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l wait -d 'How long to wait for a port that another program holds' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
 on\t'The line echoes'
 off\t'The line does not echo'"
@@ -68,6 +69,34 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s q
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s a -l unit -d 'The units to test, one after the other: 17, or 1,2,5-9; --unit-id and --slave mean the same' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l meter -d 'The meter: a name that `meters list` shows, or a profile file; it tells what the meter sends back [default: anything]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l count -d 'How many words each unit gets, one try each; at most 1000000' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l interval -d 'Least time from the start of one try to the start of the next, such as 100ms; with 0s as fast as line and meter allow' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s f -l format -d 'How tries are printed' -r -f -a "table\t'For people: a line a try and a summary'
+csv\t'Comma-separated values with a header, a row a try; the summary goes to stderr'
+json\t'One object with the settings, the tries and the summary'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
+even\t'Even parity, the standard\'s default'
+odd\t'Odd parity'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
+2\t'Two stop bits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms; a late one is waited for as long again and thrown away [default: the meter\'s longest answer time, else 1s]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
+on\t'The line echoes'
+off\t'The line does not echo'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l forever -d 'Go on until stopped; SIGINT and SIGTERM let the summary be printed'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l dry-run -d 'Print the requests in hex and send nothing'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s V -l version -d 'Print version'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s h -l help -d 'Print help'
@@ -109,7 +138,7 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_s
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l wait -d 'How long to wait for a port that another program holds' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and __fish_seen_subcommand_from verify" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
 on\t'The line echoes'
 off\t'The line does not echo'"
@@ -150,12 +179,13 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s q -l
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s V -l version -d 'Print version'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "ports" -d 'List serial ports, without opening any'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "completions" -d 'Print a shell\'s completion script'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers meters ports simulate completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "loopback" -d 'Send words to a unit and compare what comes back: is the line good?'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "ports" -d 'List serial ports, without opening any'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "completions" -d 'Print a shell\'s completion script'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "list" -d 'List the meters inside the program and your own'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "show" -d 'Show a meter: its line, limits and groups, and its points'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "export" -d 'Print the profile of a meter as the TOML file that it is'

@@ -13,7 +13,7 @@ use std::io::ErrorKind;
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
 use support::program::Program;
@@ -54,60 +54,6 @@ fn a_port_that_is_not_there_says_so() {
              program such as brltty can take it away again)\n",
         )
         .run();
-}
-
-#[test]
-fn a_port_that_another_program_holds_is_busy() {
-    let meter = PtyMeter::healthy(1);
-    let held = serialport::new(meter.path(), 9600)
-        .open()
-        .expect("nobody else has it");
-    Program::new(&format!(
-        "read-registers -p {} -a 1 0 --wait 0s",
-        meter.path()
-    ))
-    .code(3)
-    .stderr(format!(
-        "error: port {} is in use by another program\n\
-             hint: another program has it open, a cron job or ModemManager perhaps; --wait 30s \
-             waits longer\n",
-        meter.path()
-    ))
-    .run();
-    assert_eq!(meter.requests().len(), 0);
-    drop(held);
-}
-
-#[test]
-fn a_port_that_becomes_free_in_time_is_used() {
-    let meter = PtyMeter::healthy(1);
-    let held = serialport::new(meter.path(), 9600)
-        .open()
-        .expect("nobody else has it");
-    let mut waiting = Program::new(&format!(
-        "read-registers -p {} -t 10s -a 1 0 -q --wait 60s",
-        meter.path()
-    ))
-    .command()
-    .stdout(Stdio::piped())
-    .stderr(Stdio::piped())
-    .spawn()
-    .expect("the program starts");
-    let start = Instant::now();
-    while start.elapsed() < Duration::from_millis(300) {
-        let ended = waiting.try_wait().expect("it is our own child");
-        assert_eq!(ended, None, "it does not wait");
-        std::thread::sleep(Duration::from_millis(10));
-    }
-    assert_eq!(meter.requests().len(), 0);
-    drop(held);
-    let output = waiting.wait_with_output().expect("the program ends");
-    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
-    assert_eq!(
-        String::from_utf8_lossy(&output.stdout),
-        "POINT   VALUE  UNIT\n0x0000      3\n"
-    );
-    assert_eq!(output.status.code(), Some(0));
 }
 
 #[test]

@@ -268,7 +268,7 @@ fn a_loopback_with_another_word_is_no_answer() {
     let evidence = question.evidence(&reply_frame(0x11, &other));
     assert_eq!(
         evidence.mismatch.as_deref(),
-        Some("an answer to function 08 (Diagnostics)")
+        Some("0xA538, and 0xA537 was sent")
     );
 }
 

@@ -33,7 +33,7 @@ impl Bench {
             timeout: T,
             longest_answer: T,
             retries,
-            pause: Duration::ZERO,
+            ..Patience::default()
         };
         self.client.request(unit(number), request, patience)
     }

@@ -35,6 +35,7 @@ impl Bench {
             longest_answer: T,
             retries,
             pause,
+            ..Patience::default()
         };
         self.client.request(unit(17), &read(0x6B, 3), patience)
     }
@@ -123,7 +124,7 @@ fn t3_5_is_kept_before_each_of_ten_thousand_requests() {
                     timeout: T,
                     longest_answer: T,
                     retries: below(&mut rng, 3),
-                    pause: Duration::ZERO,
+                    ..Patience::default()
                 };
                 // What comes of it is told by other tests.
                 drop(bench.client.request(unit(17), &request, patience));

@@ -26,12 +26,12 @@ const fn ms(milliseconds: u64) -> Duration {
     Duration::from_millis(milliseconds)
 }
 
-const fn patience(retries: u32) -> Patience {
+fn patience(retries: u32) -> Patience {
     Patience {
         timeout: T,
         longest_answer: T,
         retries,
-        pause: Duration::ZERO,
+        ..Patience::default()
     }
 }
 
@@ -196,18 +196,6 @@ fn an_answer_that_never_ends_is_given_its_transfer_time_and_no_more() {
         failure.expect_err("it is not whole").to_string(),
         "the answer broke off after 20 of 255 bytes"
     );
-}
-
-#[test]
-fn an_exception_is_not_asked_about_again() {
-    for code in [1, 2, 3, 4, 5, 6, 8, 0x0A, 0x0B, 0x00, 0x63, 0xFF].map(ExceptionCode) {
-        let mut bench = meeting(refusal(code));
-        match bench.failure(2) {
-            Failure::Exception(found) => assert_eq!(found, code),
-            other => panic!("{other}"),
-        }
-        assert_eq!(bench.frames(), 1);
-    }
 }
 
 #[test]

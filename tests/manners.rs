@@ -66,27 +66,6 @@ fn readings_go_out_even_when_stderr_is_full() {
 }
 
 #[test]
-fn a_lost_port_is_told_once_and_every_unit_gets_its_row() {
-    let line = PtyMeter::hanging_up_after(1);
-    let output = Program::new(&format!(
-        "read-registers -p {} -a 1-3 5 -f csv",
-        line.path()
-    ))
-    .output();
-    assert_eq!(output.status.code(), Some(3));
-    assert_eq!(
-        without_times(&String::from_utf8(output.stdout).expect("CSV is text")),
-        format!("{HEADER}<time>,,1,port,\n<time>,,2,port,\n<time>,,3,port,\n")
-    );
-    let stderr = String::from_utf8(output.stderr).expect("text");
-    assert_eq!(stderr.matches("was lost").count(), 1, "{stderr}");
-    assert!(
-        stderr.ends_with("error: 2 more units were not tried\n"),
-        "{stderr}"
-    );
-}
-
-#[test]
 fn a_unit_that_stops_answering_is_given_up_after_three_reads() {
     let mut answers = 0;
     let meter = PtyMeter::new(Box::new(move |request| {

@@ -273,3 +273,15 @@ fn every_built_in_meter_is_shown_in_every_format() {
         assert_eq!(found, names);
     }
 }
+
+#[test]
+fn what_a_meter_sends_back_is_shown_where_it_is_not_everything() {
+    let shown = |arguments: &str| {
+        let output = Program::new(&format!("meters show {arguments}")).output();
+        String::from_utf8(output.stdout).expect("text")
+    };
+    assert!(shown("pqm").contains("\nloop-back   sends back 0000 alone\n"));
+    assert!(!shown("em24").contains("loop-back"));
+    assert!(shown("pqm -f json").contains("\"loopback_data\":\"zero\""));
+    assert!(shown("em24 -f json").contains("\"loopback_data\":\"any\""));
+}

@@ -7,7 +7,7 @@ use meterpoll::codec::value::{ByteOrder, RegisterType};
 use meterpoll::codec::{FunctionCode, UnitRange};
 use meterpoll::profile::load::load;
 use meterpoll::profile::point::{Access, Labels};
-use meterpoll::profile::{Point, Profile, builtin};
+use meterpoll::profile::{LoopbackData, Point, Profile, builtin};
 use meterpoll::transport::{LineSettings, Parity, StopBits};
 
 /// Every row of the PQM's memory map that is known well enough. `labels` is the manual's format, or
@@ -278,6 +278,7 @@ fn the_pqm_has_the_limits_of_its_manual() {
     assert_eq!(limits.functions, [3, 4, 5, 6, 7, 8, 16].map(function));
     assert!(limits.interchangeable_reads);
     assert_eq!(limits.broadcast_functions, [5, 16].map(function));
+    assert_eq!(limits.loopback_data, LoopbackData::Zero);
     assert_eq!(limits.read_registers, 125);
     assert_eq!(limits.write_registers, 60);
     assert!(limits.read_holes);

@@ -1,7 +1,7 @@
 //! What the strict loader says about each slip in a profile: file, line, key, problem.
 
-use meterpoll::profile::Profile;
 use meterpoll::profile::load::load;
+use meterpoll::profile::{LoopbackData, Profile};
 
 /// Lines 1 to 3 of every profile here.
 const HEAD: &str = "name = \"m\"\ntitle = \"Meter\"\nmanual = \"Manual\"\n";
@@ -52,7 +52,7 @@ fn an_unknown_key_is_named_with_the_keys_that_are_known() {
          identification, labels, factors, groups, points, identities",
     );
     let limits = "unknown key, expected highest_unit, functions, interchangeable_reads, \
-                  broadcast_functions, read_registers, write_registers, read_holes, \
+                  broadcast_functions, loopback_data, read_registers, write_registers, read_holes, \
                   table_registers, typical_answer, longest_answer, pause";
     refused(
         &with("[limits]\nread_register = 9"),
@@ -388,6 +388,14 @@ fn a_function_that_is_not_known_or_not_fit_is_refused() {
             "broadcast_functions: 6 is not one of limits.functions",
         ),
         (
+            "loopback_data = \"none\"\nfunctions = [3, 8]",
+            "loopback_data: \"none\" is not \"any\" or \"zero\"",
+        ),
+        (
+            "loopback_data = \"zero\"",
+            "loopback_data: \"zero\" is not of use without 8 in limits.functions",
+        ),
+        (
             "broadcast_functions = [3]",
             "broadcast_functions: 3 is not 5, 6 or 16, a function that writes",
         ),
@@ -396,6 +404,24 @@ fn a_function_that_is_not_known_or_not_fit_is_refused() {
             &with(&format!("[limits]\n{limit}")),
             &format!("m.toml:5: limits.{expected}"),
         );
+    }
+}
+
+#[test]
+fn function_8_sends_back_anything_unless_the_profile_says_otherwise() {
+    for (limits, data) in [
+        ("functions = [3, 8]", LoopbackData::Any),
+        (
+            "functions = [3, 8]\nloopback_data = \"any\"",
+            LoopbackData::Any,
+        ),
+        (
+            "functions = [3, 8]\nloopback_data = \"zero\"",
+            LoopbackData::Zero,
+        ),
+    ] {
+        let profile = good(&with(&format!("[limits]\n{limits}")));
+        assert_eq!(profile.limits.loopback_data, data, "{limits}");
     }
 }
 

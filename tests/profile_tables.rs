@@ -7,7 +7,7 @@ use std::time::Duration;
 use meterpoll::codec::{FunctionCode, UnitRange};
 use meterpoll::profile::point::{Access, Labels, Marker};
 use meterpoll::profile::scaling::{Operand, Scaling};
-use meterpoll::profile::{Missing, Point, Profile, builtin};
+use meterpoll::profile::{LoopbackData, Missing, Point, Profile, builtin};
 use meterpoll::transport::LineSettings;
 
 const TABLES: [(&str, &str); 3] = [
@@ -167,6 +167,7 @@ fn the_limits_are_those_of_the_manuals() {
         assert_eq!(limits.functions, [3, 4, 6, 8].map(function));
         assert!(limits.interchangeable_reads);
         assert_eq!(limits.broadcast_functions, [6].map(function));
+        assert_eq!(limits.loopback_data, LoopbackData::Any);
         assert_eq!((limits.read_registers, limits.write_registers), (11, 1));
         assert_eq!(limits.table_registers, None);
         assert_eq!(limits.typical_answer, Duration::from_millis(40));
@@ -177,6 +178,7 @@ fn the_limits_are_those_of_the_manuals() {
     assert_eq!(limits.functions, [3, 4, 6, 8, 16].map(function));
     assert!(limits.interchangeable_reads);
     assert_eq!(limits.broadcast_functions, [6, 16].map(function));
+    assert_eq!(limits.loopback_data, LoopbackData::Any);
     assert_eq!((limits.read_registers, limits.write_registers), (125, 123));
     assert_eq!(limits.table_registers, Some(256));
     assert_eq!(limits.longest_answer, Duration::from_secs(1));

@@ -202,10 +202,11 @@ fn keys() -> Vec<&'static str> {
 
 #[test]
 fn every_option_it_names_is_in_the_help() {
-    let help: String = ["read-registers --help", "simulate --help"]
-        .map(|command| Program::new(command).output().stdout)
-        .map(|help| String::from_utf8(help).expect("text"))
+    let help = |command| Program::new(&format!("{command} --help")).output().stdout;
+    let help = ["read-registers", "loopback", "simulate"]
+        .map(help)
         .concat();
+    let help = String::from_utf8(help).expect("text");
     let mut named: Vec<&str> = README
         .split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'))
         .filter(|word| word.starts_with("--") && word.trim_matches('-').len() > 1)

@@ -184,8 +184,8 @@ fn a_point_as_wide_as_the_refused_read_is_not_asked_for_again() {
 }
 
 #[test]
-fn a_busy_meter_is_asked_for_no_parts() {
-    for code in [1, 4, 6, 0x0B] {
+fn a_refusal_that_is_not_about_registers_is_not_asked_about_in_parts() {
+    for code in [1, 4, 5, 0x0A, 0x63] {
         let mut run = Run::new(Fussy::new(Some(code)).limit(0));
         let points = points((0..3).chain(8..9));
         let (row, troubles) = run.read(&points);

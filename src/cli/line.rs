@@ -43,7 +43,8 @@ pub struct LineArguments {
     /// Time to wait after opening the port, for adapters that need it
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "0s")]
     pub settle: Duration,
-    /// How long to wait for a port that another program holds
+    /// How long to wait for a port that another program holds; after that the message names it
+    /// where the system tells
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "5s")]
     pub wait: Duration,
     /// Whether the line sends our own bytes back, as two-wire adapters may

@@ -3,6 +3,11 @@
 //! [`Arguments`].
 
 mod line;
+#[allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "its doc comments are help texts, where [default: ...] is no link"
+)]
+mod loopback;
 mod meters;
 #[allow(
     rustdoc::broken_intra_doc_links,
@@ -22,6 +27,7 @@ use clap::{ArgAction, Args, Parser, Subcommand};
 use clap_complete::Shell;
 
 pub use line::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
+pub use loopback::{Loopback, LoopbackFormat};
 pub use meters::{
     CheckMeters, ExportMeter, Meters, MetersCommand, ShowFormat, ShowMeter, VerifyMeter,
 };
@@ -35,7 +41,7 @@ pub const EXIT_CODES: [(u8, &str); 10] = [
     (0, "everything asked for was done"),
     (
         1,
-        "some readings are missing, or something that must hold does not",
+        "some readings or loop-backs are missing, or something that must hold does not",
     ),
     (
         2,
@@ -96,6 +102,21 @@ pub struct Verbosity {
 pub enum Command {
     /// Read points of a meter by name, or raw registers by address
     ReadRegisters(Box<ReadRegisters>),
+    /// Send words to a unit and compare what comes back: is the line good?
+    ///
+    /// Function 08, sub-function 0 (Return Query Data), as ping does it elsewhere: a line a try, then
+    /// how many were answered and how long that took, and in words whether the line is good.
+    ///
+    /// It is good when every word came back and nothing else was heard; bad when more than 5 of 100
+    /// tries were lost, or when nothing but our own echo came back; doubtful in between: with damage,
+    /// noise, late answers or frames of other units. The jitter is the mean difference between an
+    /// answer time and the one before; p95 is the time that 95 of 100 answers did not exceed.
+    ///
+    /// One register is read first, which tells whether the line echoes.
+    ///
+    /// Ends with 0 when every try was answered, and with 1 when some were; when none was, with the
+    /// code of the cause: 4, or 5 when all were refused; with 3 when the port was lost.
+    Loopback(Box<Loopback>),
     /// List known meters, show one, print its profile, check a profile, verify it on a live meter
     Meters(Meters),
     /// List serial ports, without opening any

@@ -40,6 +40,14 @@ pub(super) struct Arrivals {
 }
 
 impl Arrivals {
+    /// Nothing, and nothing any more: bytes were taken out.
+    pub(super) const fn useless() -> Self {
+        Self {
+            came: Vec::new(),
+            is_useless: true,
+        }
+    }
+
     /// So many more came at this time; `is_whole` while none was let go.
     pub(super) fn note(&mut self, count: usize, at: Duration, is_whole: bool) {
         self.is_useless |= !is_whole;

@@ -103,6 +103,11 @@ impl<'a> Expectation<'a> {
 
     /// Judges all bytes received since the request went out.
     pub fn judge(&self, received: &[u8]) -> Verdict {
+        self.judge_to(received).0
+    }
+
+    /// The same, and how many of the bytes that took: up to the end of the answer, or all of them.
+    pub(super) fn judge_to(&self, received: &[u8]) -> (Verdict, usize) {
         let mut evidence = Evidence::default();
         let mut at = 0;
         while let Some(rest) = received.get(at..).filter(|rest| !rest.is_empty()) {
@@ -124,7 +129,8 @@ impl<'a> Expectation<'a> {
                     Ok((_, reply)) if self.is_answered_by(&reply) => {
                         // An answer that is not whole yet can hold what looks like an exception.
                         if evidence.begun.is_none() {
-                            return Verdict::Answer(reply, evidence);
+                            let end = at + frame.len();
+                            return (Verdict::Answer(reply, evidence), end);
                         }
                         at += frame.len();
                         continue;
@@ -141,7 +147,7 @@ impl<'a> Expectation<'a> {
             }
             at += self.skip(rest, &mut evidence);
         }
-        Verdict::Waiting(evidence)
+        (Verdict::Waiting(evidence), received.len())
     }
 
     /// How sure it is that a damaged answer was one.
@@ -245,6 +251,9 @@ impl<'a> Expectation<'a> {
                 ) if *function == answered => {
                     let (found, asked) = (values.count(), range.count());
                     format!("{found} registers, and {asked} asked for")
+                }
+                (Request::ReturnQueryData(sent), Response::QueryData(found)) => {
+                    format!("0x{found:04X}, and 0x{sent:04X} was sent")
                 }
                 (_, response) => format!("an answer to {}", response.function()),
             },

@@ -1,34 +1,106 @@
 //! Answers that have not come and may still do so.
 //!
 //! After a failed attempt its answer can be on the way, and it would look like the answer to
-//! whatever is asked next. So it is remembered until it has come or until nobody has to reckon
-//! with it any more: as long again as it was given to begin, and for the same unit at least as
-//! long as the meter may take at the worst, whatever shorter time-out was asked for. The unit in
-//! every frame tells answers of different meters apart; waiting for those as well keeps two of them
-//! from talking at once.
+//! whatever is asked next. So it is *awaited* until it has come or until nobody has to reckon with
+//! it any more: as long again as it was given to begin, and for the same unit at least as long as
+//! the meter may take at the worst, whatever shorter time-out was asked for. The unit in every
+//! frame tells answers of different meters apart; waiting for those as well keeps two of them from
+//! talking at once.
+//!
+//! An answer that did not come in that time is *overdue*: it is not waited for any more, but
+//! remembered, for it can come still. A meter answers one request after the other, and what
+//! carries its bytes keeps their order; so once the unit has answered anything that was asked later,
+//! an answer that is overdue will never come.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::belief::{Echo, Expectation, Verdict};
-use super::transaction::{ADAPTER_LATENCY, Patience};
-use crate::codec::{Frame, Request, Unit};
+use super::patience::Patience;
+use super::transaction::ADAPTER_LATENCY;
+use crate::codec::{Frame, FunctionCode, Request, Unit};
 
-/// A request that was sent more often than it was answered.
+/// A request that was sent and not answered.
+#[derive(Clone)]
 struct Debt {
-    unit: Unit,
     request: Request,
     frame: Frame,
-    answers: u32,
     /// Until when nobody else is asked.
     line_until: Duration,
     /// Until when the unit is not asked anything else.
     unit_until: Duration,
-    patience: Patience,
+    longest_answer: Duration,
 }
 
-/// All debts of a line, at most one a unit.
+/// What one unit owes.
 #[derive(Default)]
-pub(super) struct Debts(Vec<Debt>);
+struct Account {
+    /// Answers that are waited for, in the order of their requests.
+    awaited: Vec<Debt>,
+    /// The last answer of each function that is not waited for any more.
+    overdue: Vec<Debt>,
+    /// Functions of which answers to more than one request are overdue.
+    confused: Vec<FunctionCode>,
+    /// Until when nothing else is asked, whatever comes.
+    held_until: Option<Duration>,
+}
+
+/// An answer that was owed and has come.
+pub(super) struct Late {
+    pub(super) unit: Unit,
+    pub(super) frame: Frame,
+    /// How many of the bytes it was found in it takes, together with all before it.
+    pub(super) end: usize,
+}
+
+/// What is asked next.
+#[derive(Clone, Copy)]
+pub(super) enum Next<'a> {
+    /// This.
+    Request(Unit, &'a Frame),
+    /// Something that no answer to anything before may be taken for.
+    Unlike(Unit),
+    /// Nothing: the line is left.
+    Nothing,
+}
+
+/// All debts of a line.
+#[derive(Default)]
+pub(super) struct Debts(BTreeMap<Unit, Account>);
+
+impl Account {
+    /// Stops waiting for what has not come in time.
+    fn expire(&mut self, now: Duration) {
+        let (expired, awaited) = std::mem::take(&mut self.awaited)
+            .into_iter()
+            .partition(|debt| debt.unit_until <= now);
+        self.awaited = awaited;
+        for debt in expired {
+            let function = debt.request.function();
+            let same = |other: &&Debt| other.request.function() == function;
+            if self
+                .overdue
+                .iter()
+                .find(same)
+                .is_some_and(|other| other.frame != debt.frame)
+            {
+                self.confused.push(function);
+            }
+            self.overdue.retain(|other| !same(&other));
+            self.overdue.push(debt);
+        }
+        self.confused.dedup();
+        self.held_until = self.held_until.filter(|until| *until > now);
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Debt> {
+        self.overdue.iter().chain(&self.awaited)
+    }
+
+    fn is_settled(&self) -> bool {
+        self.awaited.is_empty() && self.overdue.is_empty() && self.held_until.is_none()
+    }
+}
 
 impl Debts {
     /// One more answer is to be expected to a request that has left the line at `sent` and whose
@@ -41,70 +113,148 @@ impl Debts {
         transfer: Duration,
     ) {
         let begin = sent + patience.timeout + transfer + ADAPTER_LATENCY;
-        let line_until = begin + patience.timeout;
-        let unit_until = begin + patience.timeout.max(patience.longest_answer);
-        let before = self.answers(unit);
-        self.0.retain(|debt| debt.unit != unit);
-        self.0.push(Debt {
-            unit,
+        self.0.entry(unit).or_default().awaited.push(Debt {
             request: request.clone(),
             frame: frame.clone(),
-            answers: before + 1,
-            line_until,
-            unit_until,
-            patience,
+            line_until: begin + patience.timeout,
+            unit_until: begin + patience.at_the_most(),
+            longest_answer: patience.longest_answer,
         });
     }
 
+    /// Whether anything is waited for.
+    pub(super) fn is_owed(&self) -> bool {
+        let waits = |account: &Account| !account.awaited.is_empty() || account.held_until.is_some();
+        self.0.values().any(waits)
+    }
+
+    /// Something may come of a unit until then that nobody can tell from an answer.
+    pub(super) fn hold(&mut self, unit: Unit, until: Duration) {
+        let account = self.0.entry(unit).or_default();
+        account.held_until = account.held_until.max(Some(until));
+    }
+
     /// How many answers a unit owes.
-    pub(super) fn answers(&self, unit: Unit) -> u32 {
-        let debt = self.0.iter().find(|debt| debt.unit == unit);
-        debt.map_or(0, |debt| debt.answers)
+    pub(super) fn count(&self, unit: Unit) -> usize {
+        self.0.get(&unit).map_or(0, |account| account.all().count())
     }
 
-    /// One answer of a unit has come, at `now`. One that was late says that the next can be as
-    /// late.
-    pub(super) fn paid(&mut self, unit: Unit, now: Duration) {
-        for debt in self.0.iter_mut().filter(|debt| debt.unit == unit) {
-            debt.answers -= 1;
-            let again = now + debt.patience.longest_answer;
-            debt.unit_until = debt.unit_until.max(again);
+    /// An answer to this request of a unit has come, at `now`: what was asked before it will not
+    /// be answered any more. When it was late, the next can be as late.
+    pub(super) fn answered(&mut self, unit: Unit, frame: &Frame, now: Duration) {
+        let Some(account) = self.0.get_mut(&unit) else {
+            return;
+        };
+        if let Some(index) = account.awaited.iter().position(|debt| debt.frame == *frame) {
+            account.awaited.drain(..=index);
+            account.overdue.clear();
+            account.confused.clear();
+        } else {
+            account.overdue.retain(|debt| debt.frame != *frame);
         }
-        self.0.retain(|debt| debt.answers > 0);
+        for debt in &mut account.awaited {
+            debt.unit_until = debt.unit_until.max(now + debt.longest_answer);
+        }
+        if account.is_settled() {
+            self.0.remove(&unit);
+        }
     }
 
-    /// Until when to wait before `next` goes out, or before the line is left when there is no
-    /// next; `None` when it need not wait. The same request may go out at once: a late answer to it
-    /// is right.
-    pub(super) fn wait_until(
-        &mut self,
-        next: Option<(Unit, &Frame)>,
-        now: Duration,
-    ) -> Option<Duration> {
-        self.0.retain(|debt| debt.unit_until > now);
-        let until = |debt: &Debt| match next {
-            Some((_, frame)) if debt.frame == *frame => None,
-            Some((unit, _)) if debt.unit != unit => Some(debt.line_until),
+    /// What was the answer to this request, for all that can be told, has come damaged.
+    pub(super) fn answered_badly(&mut self, unit: Unit, frame: &Frame) {
+        if let Some(account) = self.0.get_mut(&unit)
+            && let Some(index) = account.awaited.iter().position(|debt| debt.frame == *frame)
+        {
+            account.awaited.remove(index);
+        }
+    }
+
+    /// Whether an answer to this very request is waited for.
+    pub(super) fn awaits(&self, unit: Unit, frame: &Frame) -> bool {
+        let awaited = |account: &Account| account.awaited.iter().any(|debt| debt.frame == *frame);
+        self.0.get(&unit).is_some_and(awaited)
+    }
+
+    /// Whether an answer with this function is owed.
+    pub(super) fn owes(&self, unit: Unit, function: FunctionCode) -> bool {
+        let is_of = |debt: &Debt| debt.request.function() == function;
+        self.0
+            .get(&unit)
+            .is_some_and(|account| account.all().any(is_of))
+    }
+
+    /// Whether an answer with this function could come from the unit that belongs to another
+    /// request than this.
+    pub(super) fn doubt(&self, unit: Unit, request: &Request, frame: &Frame) -> bool {
+        self.0.get(&unit).is_some_and(|account| {
+            let function = request.function();
+            let mut debts = account.all();
+            account.confused.contains(&function)
+                || debts.any(|debt| debt.request.function() == function && debt.frame != *frame)
+        })
+    }
+
+    /// Reckons no longer with overdue answers of this function.
+    pub(super) fn forget(&mut self, unit: Unit, function: FunctionCode) {
+        if let Some(account) = self.0.get_mut(&unit) {
+            account
+                .overdue
+                .retain(|debt| debt.request.function() != function);
+            account.confused.retain(|confused| *confused != function);
+        }
+    }
+
+    /// Until when to wait before `next`; `None` when it need not wait. The same request may go out
+    /// at once: a late answer to it is right.
+    pub(super) fn wait_until(&mut self, next: Next<'_>, now: Duration) -> Option<Duration> {
+        for account in self.0.values_mut() {
+            account.expire(now);
+        }
+        let until = |unit: Unit, debt: &Debt| match next {
+            Next::Request(asked, frame) if asked == unit && debt.frame == *frame => None,
+            Next::Request(asked, _) | Next::Unlike(asked) if asked != unit => Some(debt.line_until),
             _ => Some(debt.unit_until),
+        };
+        let held = |unit: Unit, account: &Account| match next {
+            Next::Request(asked, _) | Next::Unlike(asked) if asked != unit => None,
+            _ => account.held_until,
         };
         self.0
             .iter()
-            .filter_map(until)
+            .flat_map(|(unit, account)| {
+                let debts = account.awaited.iter().filter_map(|debt| until(*unit, debt));
+                debts.chain(held(*unit, account))
+            })
             .max()
             .filter(|until| *until > now)
     }
 
-    /// The unit of which `received` holds an answer that is owed.
-    pub(super) fn paid_by(
+    /// An answer in `received` that is owed, and is none to `asked`.
+    pub(super) fn late_in(
         &self,
         received: &[u8],
+        asked: Option<(Unit, &Frame)>,
         echo: Echo,
         echoes: Option<bool>,
-    ) -> Option<Unit> {
-        let is_paid = |debt: &&Debt| {
-            let expectation = Expectation::new(debt.unit, &debt.request, &debt.frame, echo, echoes);
-            matches!(expectation.judge(received), Verdict::Answer(..))
-        };
-        self.0.iter().find(is_paid).map(|debt| debt.unit)
+    ) -> Option<Late> {
+        let all = self
+            .0
+            .iter()
+            .flat_map(|(unit, account)| account.all().map(|debt| (*unit, debt)));
+        let mut late = all.filter_map(|(unit, debt)| {
+            if asked.is_some_and(|(asked, frame)| asked != unit || debt.frame == *frame) {
+                return None;
+            }
+            let expectation = Expectation::new(unit, &debt.request, &debt.frame, echo, echoes);
+            match expectation.judge_to(received) {
+                (Verdict::Answer(..), end) => Some(Late {
+                    unit,
+                    frame: debt.frame.clone(),
+                    end,
+                }),
+                _ => None,
+            }
+        });
+        late.next()
     }
 }

@@ -59,11 +59,21 @@ pub enum Failure {
 
 impl Failure {
     /// Whether asking again can help: the line failed, not the meter or the port.
-    pub const fn is_worth_a_retry(&self) -> bool {
-        !matches!(
-            self,
-            Self::Exception(_) | Self::Port(_) | Self::NeverQuiet { .. }
-        )
+    pub fn is_worth_a_retry(&self) -> bool {
+        match self {
+            // The line behind a gateway is a line as well.
+            Self::Exception(code) => {
+                *code == ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND
+            }
+            Self::Port(_) | Self::NeverQuiet { .. } => false,
+            _ => true,
+        }
+    }
+
+    /// Whether the port was lost before, and did not come back for this request. Asking anything
+    /// else is likely to be as much in vain.
+    pub const fn is_port_away(&self) -> bool {
+        matches!(self, Self::Port(TransportError::NotBack { .. }))
     }
 
     /// Whether the unit said nothing at all.

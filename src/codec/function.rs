@@ -122,6 +122,17 @@ pub enum ReadFunction {
     InputRegisters,
 }
 
+impl ReadFunction {
+    /// The other of the two.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::HoldingRegisters => Self::InputRegisters,
+            Self::InputRegisters => Self::HoldingRegisters,
+        }
+    }
+}
+
 impl From<ReadFunction> for FunctionCode {
     fn from(function: ReadFunction) -> Self {
         match function {

@@ -22,6 +22,16 @@ pub enum Reply {
     },
 }
 
+impl Reply {
+    /// Why it refuses; `None` for a normal response.
+    pub const fn exception(&self) -> Option<ExceptionCode> {
+        match self {
+            Self::Normal(_) => None,
+            Self::Exception { code, .. } => Some(*code),
+        }
+    }
+}
+
 /// A normal response.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Response {

@@ -69,6 +69,17 @@ impl Request {
         }
     }
 
+    /// The same read with the other of the functions 03 and 04; `None` for what is no read.
+    pub fn with_other_function(&self) -> Option<Self> {
+        match self {
+            Self::Read { function, range } => Some(Self::Read {
+                function: function.other(),
+                range: *range,
+            }),
+            _ => None,
+        }
+    }
+
     /// Appends the data unit, function code first: 1 to 252 bytes.
     pub fn encode(&self, into: &mut Vec<u8>) {
         match self {

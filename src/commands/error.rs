@@ -51,7 +51,7 @@ pub enum CommandError {
         /// What was named.
         port: String,
     },
-    /// The meter does not read with this function.
+    /// The meter does not have this function.
     #[error("{meter} does not answer function {code:02}")]
     Function {
         /// The meter.

@@ -6,6 +6,7 @@ mod completions;
 mod error;
 mod exit_code;
 mod logging;
+mod loopback;
 mod meters;
 mod open_line;
 mod ports;
@@ -37,6 +38,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let mut report = Report::new(arguments.verbosity.quiet);
     let result = match arguments.command {
         Command::ReadRegisters(arguments) => read_registers::run(&arguments, &mut report),
+        Command::Loopback(arguments) => loopback::run(&arguments, &mut report),
         Command::Meters(arguments) => meters::run(&arguments, &mut report),
         Command::Ports => ports::list(&report),
         Command::Simulate(arguments) => simulate::run(&arguments, &report),

@@ -7,8 +7,9 @@ use log::info;
 
 use super::CommandError;
 use crate::cli::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
-use crate::client::{Client, Echo, Patience};
-use crate::profile::{Limits, Profile};
+use crate::client::{Client, Echo, Patience, QueryData, Ways};
+use crate::codec::FunctionCode;
+use crate::profile::{Limits, LoopbackData, Profile};
 use crate::sim::SimulatedLine;
 use crate::transport::serial::Serial;
 use crate::transport::traced::Traced;
@@ -46,7 +47,8 @@ impl<'a> LinePlan<'a> {
         format!("{} at {}", self.port(), self.settings)
     }
 
-    fn port(&self) -> &str {
+    /// The port as it was named; empty when none was.
+    pub(super) fn port(&self) -> &str {
         self.arguments.port.as_deref().unwrap_or_default()
     }
 
@@ -57,11 +59,35 @@ impl<'a> LinePlan<'a> {
             longest_answer: limits.longest_answer,
             retries: self.arguments.retries,
             pause: self.arguments.pause.unwrap_or(limits.pause),
+            ways: Ways {
+                interchangeable_reads: limits.interchangeable_reads,
+                loopback: limits
+                    .functions
+                    .contains(&FunctionCode::Diagnostics)
+                    .then_some(match limits.loopback_data {
+                        LoopbackData::Any => QueryData::Any,
+                        LoopbackData::Zero => QueryData::Zero,
+                    }),
+            },
         }
     }
 
     /// Opens the port and returns a client on it.
     pub(super) fn open(&self) -> Result<Client, CommandError> {
+        self.open_with(self.echo())
+    }
+
+    /// What was said of echoes.
+    pub(super) fn echo(&self) -> Echo {
+        match self.arguments.echo {
+            EchoChoice::Auto => Echo::Auto,
+            EchoChoice::On => Echo::On,
+            EchoChoice::Off => Echo::Off,
+        }
+    }
+
+    /// The same with another way to take echoes.
+    pub(super) fn open_with(&self, echo: Echo) -> Result<Client, CommandError> {
         let clock: Arc<dyn Clock> = Arc::new(SystemClock::new());
         let transport = self.transport(&clock)?;
         if !self.arguments.settle.is_zero() {
@@ -72,13 +98,9 @@ impl<'a> LinePlan<'a> {
         } else {
             transport
         };
-        let echo = match self.arguments.echo {
-            EchoChoice::Auto => Echo::Auto,
-            EchoChoice::On => Echo::On,
-            EchoChoice::Off => Echo::Off,
-        };
         info!("opened {}", self.name());
         let line = Line::new(transport, clock, Timing::Paced(self.settings))?;
+        let line = line.settling(self.arguments.settle);
         Ok(Client::new(line, echo))
     }
 
@@ -98,7 +120,7 @@ impl<'a> LinePlan<'a> {
             let port = port.to_owned();
             return Err(CommandError::Tcp { port });
         }
-        let serial = while_busy(&**clock, self.arguments.wait, || {
+        let serial = while_busy(&**clock, port, self.arguments.wait, || {
             Serial::open(port, self.settings)
         });
         Ok(Box::new(serial?))
@@ -129,14 +151,22 @@ pub(super) fn settings(
 /// Opens a port, again and again while another program holds it, at most for `wait`.
 pub(super) fn while_busy<T>(
     clock: &dyn Clock,
+    port: &str,
     wait: Duration,
     mut open: impl FnMut() -> Result<T, OpenError>,
 ) -> Result<T, OpenError> {
     let give_up = clock.now() + wait;
+    let mut is_told = false;
     loop {
         match open() {
-            Err(OpenError::Busy { .. }) if clock.now() < give_up => clock.sleep(TRY_AGAIN),
-            result => return result,
+            Err(OpenError::Busy { .. }) if clock.now() < give_up => {
+                if !is_told {
+                    info!("port {port} is in use, waiting for it");
+                    is_told = true;
+                }
+                clock.sleep(TRY_AGAIN);
+            }
+            result => return result.map_err(OpenError::with_holders),
         }
     }
 }

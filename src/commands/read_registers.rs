@@ -32,7 +32,9 @@ pub(super) fn run(
     let units = units(&arguments.unit, &limits)?;
     let points = points(arguments, profile.as_ref())?;
     let function = function(arguments, &limits);
-    let asking = Asking::new(&line, profile.as_ref(), &points, function);
+    let mut asking = Asking::new(&line, profile.as_ref(), &points, function);
+    // Who names a function gets that one.
+    asking.patience.ways.interchangeable_reads &= arguments.function.is_none();
     if arguments.dry_run || arguments.plan {
         return show(arguments, &line, &units, &asking);
     }
@@ -92,15 +94,20 @@ fn read(
     let mut sink = sink(arguments, heading);
     let mut delivered = 0;
     let mut faults = Vec::new();
-    let mut lost = 0;
+    // A lost port is looked for by the next unit; where it does not come back, each of the others
+    // would look for it in vain as long.
+    let mut is_away = false;
+    let mut untried = 0;
     for unit in units.iter().copied() {
-        let row = if lost == 0 {
-            asking.ask(unit, client, report).row
-        } else {
+        let row = if is_away {
+            untried += 1;
             let count = asking.points.len();
             Row::missing(client.utc_now(), asking.meter, unit, count, Fault::Port)
+        } else {
+            let taken = asking.ask(unit, client, report);
+            is_away = taken.is_port_away();
+            taken.row
         };
-        lost += usize::from(row.worst() == Some(Fault::Port));
         sink.row(asking.points, &row)
             .map_err(CommandError::Output)?;
         faults.extend(row.faults());
@@ -110,8 +117,8 @@ fn read(
         }
     }
     sink.finish().map_err(CommandError::Output)?;
-    if lost > 1 {
-        report::untried_units(lost - 1);
+    if untried > 0 {
+        report::untried_units(untried);
     }
     Ok(ExitCode::of(delivered, &faults))
 }

@@ -14,6 +14,7 @@ use crate::output::escape;
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
 use crate::readings::Trouble;
+use crate::transport::holder::Holders;
 use crate::transport::listen::ListenError;
 use crate::transport::{OpenError, PtyError};
 
@@ -107,6 +108,18 @@ impl Report {
         }
     }
 
+    /// Prints why a unit cannot be asked any more.
+    pub(super) fn failure(&mut self, place: &str, failure: &Failure) {
+        say(format_args!("error: {place}: {failure}"));
+        causes(failure);
+        self.hint(failure_hint(failure).map(str::to_owned));
+    }
+
+    /// Prints what to try.
+    pub(super) fn advise(&mut self, hint: &str) {
+        self.hint(Some(hint.to_owned()));
+    }
+
     /// Prints something a person may want to know although all is well.
     pub(super) fn remark(&self, text: &str) {
         if !self.quiet {
@@ -185,6 +198,9 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
+        CommandError::Function { code: 8, .. } => {
+            "without --meter it is sent all the same, and the meter may refuse it"
+        }
         CommandError::Function { .. } => {
             "the other function reads its registers: see --function, or 3xxxx and 4xxxx with \
              --numbering modicon"
@@ -249,6 +265,10 @@ fn open_hint(error: &OpenError) -> Option<String> {
              such as brltty can take it away again)"
         }
         OpenError::NotSerial { .. } => "`meterpoll ports` lists the ports",
+        OpenError::Busy {
+            holders: Holders::Seen(_),
+            ..
+        } => "--wait 30s waits longer for it to end",
         OpenError::Busy { .. } => {
             "another program has it open, a cron job or ModemManager perhaps; --wait 30s waits longer"
         }
@@ -268,7 +288,7 @@ fn open_hint(error: &OpenError) -> Option<String> {
     Some(text.to_owned())
 }
 
-fn failure_hint(failure: &Failure) -> Option<&'static str> {
+pub(super) fn failure_hint(failure: &Failure) -> Option<&'static str> {
     Some(match failure {
         Failure::Silence { .. } => {
             "check --unit, --baud, --parity and --stop-bits against the meter, then power and \
@@ -293,6 +313,25 @@ fn failure_hint(failure: &Failure) -> Option<&'static str> {
         Failure::Exception(ExceptionCode::ILLEGAL_DATA_ADDRESS) => {
             "the meter has no such registers, or not as many at once; addresses are as on the \
              wire, from 0 (for 40001 and the like see --numbering modicon)"
+        }
+        Failure::Exception(ExceptionCode::SERVER_DEVICE_FAILURE) => {
+            "the meter itself failed: its display or its manual may say why"
+        }
+        Failure::Exception(ExceptionCode::ACKNOWLEDGE) => {
+            "the meter is still at work on something: ask again later"
+        }
+        Failure::Exception(ExceptionCode::SERVER_DEVICE_BUSY) => {
+            "the meter is there but busy, perhaps somebody is at its keys: ask again later"
+        }
+        Failure::Exception(ExceptionCode::MEMORY_PARITY_ERROR) => {
+            "the memory of the meter is damaged: it needs service"
+        }
+        Failure::Exception(ExceptionCode::GATEWAY_PATH_UNAVAILABLE) => {
+            "a gateway on the way has no path to this unit: check its setup, and --unit"
+        }
+        Failure::Exception(ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND) => {
+            "a gateway on the way got no answer from the unit: check --unit, then power and wiring \
+             behind the gateway"
         }
         Failure::Port(_) => LOST_HINT,
         Failure::Exception(_) => return None,

@@ -1,16 +1,19 @@
 //! Readings, and meters, as people and programs want them.
 //!
 //! Every format of readings is a [`Sink`] that takes one [`Row`] after the other. A row goes out in
-//! one write. What a meter's profile says is a [`profile::Shown`].
+//! one write. Loop-back tests have sinks of their own, see [`loopback`]. What a meter's profile says is a [`profile::Shown`].
 
 pub mod columns;
 pub mod csv;
 pub mod json;
+pub mod loopback;
 pub mod profile;
 pub mod table;
 pub mod verification;
 
 use std::io;
+
+use jiff::Timestamp;
 
 use crate::profile::Point;
 use crate::readings::{Fault, Row};
@@ -36,7 +39,11 @@ pub trait Sink {
 
 /// Time as every output prints it: RFC 3339, UTC, milliseconds.
 pub fn time(row: &Row) -> String {
-    format!("{:.3}", row.time)
+    rfc3339(row.time)
+}
+
+fn rfc3339(time: Timestamp) -> String {
+    format!("{time:.3}")
 }
 
 /// The status of a row or a reading.

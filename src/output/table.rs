@@ -2,8 +2,11 @@
 
 use std::io::{self, Write};
 
+use jiff::Timestamp;
+
 use super::columns::columns;
 use super::{Sink, escape, status};
+use crate::codec::Unit;
 use crate::profile::{Point, Value};
 use crate::readings::{Fault, Row};
 
@@ -76,12 +79,17 @@ impl<W: Write> Sink for Table<W> {
 
 /// Which meter was read, where and when.
 pub(super) fn heading(row: &Row, line: &str) -> String {
-    let meter = match row.meter.as_str() {
+    title(&row.meter, row.unit, line, row.time)
+}
+
+/// The same of a meter, which has no name when it is empty, and a unit.
+pub(super) fn title(meter: &str, unit: Unit, line: &str, time: Timestamp) -> String {
+    let meter = match meter {
         "" => String::new(),
         meter => format!("{meter}, "),
     };
-    let time = row.time.strftime("%Y-%m-%d %H:%M:%S UTC");
-    format!("{meter}unit {} on {line}, {time}\n", row.unit)
+    let time = time.strftime("%Y-%m-%d %H:%M:%S UTC");
+    format!("{meter}unit {unit} on {line}, {time}\n")
 }
 
 fn grid(points: &[Point], row: &Row) -> String {

@@ -13,9 +13,10 @@
 //!
 //! [limits]                      # every key can be left out
 //! highest_unit = 247            # 247, or 255 where the meter uses the reserved numbers
-//! functions = [3, 4, 6, 16]     # default [3, 4]
+//! functions = [3, 4, 6, 8, 16]  # default [3, 4]
 //! interchangeable_reads = true  # functions 03 and 04 read the same registers; default false
 //! broadcast_functions = [6]     # obeyed on address 0; default none
+//! loopback_data = "any"         # what function 08 sends back: any (default) or zero alone
 //! read_registers = 125          # the most in one read, 1 to 125
 //! write_registers = 123         # the most in one write, 1 to 123
 //! read_holes = false            # a read may cover registers that no point names
@@ -159,6 +160,7 @@ pub struct LimitsTable {
     pub(super) interchangeable_reads: bool,
     #[serde(default)]
     pub(super) broadcast_functions: Vec<Spanned<u8>>,
+    pub(super) loopback_data: Option<Spanned<String>>,
     pub(super) read_registers: Option<Spanned<u16>>,
     pub(super) write_registers: Option<Spanned<u16>>,
     #[serde(default)]

@@ -17,7 +17,7 @@ use super::error::{Problem, ProfileError};
 use super::format::{
     IdentificationTable, LabelTable, LimitsTable, LineTable, PointTable, ProfileFile,
 };
-use super::model::{Group, Identification, Limits, Profile};
+use super::model::{Group, Identification, Limits, LoopbackData, Profile};
 use super::point::{Names, Point};
 use crate::codec::{FunctionCode, ReadFunction, RegisterBlock, RegisterRange, UnitRange};
 use crate::transport::{LineSettings, Parity, StopBits};
@@ -214,6 +214,7 @@ fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileErr
         }
         broadcast_functions.push(function);
     }
+    let loopback_data = loopback_data(source, table, &functions)?;
     let table_registers = table
         .table_registers
         .as_ref()
@@ -224,6 +225,7 @@ fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileErr
         functions,
         interchangeable_reads: table.interchangeable_reads,
         broadcast_functions,
+        loopback_data,
         read_registers: source.bounded(
             table.read_registers.as_ref(),
             "limits.read_registers",
@@ -244,6 +246,27 @@ fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileErr
         longest_answer: longest_answer(source, table, default.longest_answer)?,
         pause: source.duration(table.pause.as_ref(), "limits.pause", default.pause)?,
     })
+}
+
+/// What function 08 sends back, which only a meter that has it can say.
+fn loopback_data(
+    source: &Source<'_>,
+    table: &LimitsTable,
+    functions: &[FunctionCode],
+) -> Result<LoopbackData, ProfileError> {
+    let key = "limits.loopback_data";
+    let Some(word) = &table.loopback_data else {
+        return Ok(LoopbackData::default());
+    };
+    let data = match word.as_ref().as_str() {
+        "any" => LoopbackData::Any,
+        "zero" => LoopbackData::Zero,
+        _ => return Err(source.value(word, key, "\"any\" or \"zero\"")),
+    };
+    if functions.contains(&FunctionCode::Diagnostics) {
+        return Ok(data);
+    }
+    Err(source.value(word, key, "of use without 8 in limits.functions"))
 }
 
 /// The time-out where none is asked for, so it is above zero.

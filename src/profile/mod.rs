@@ -31,7 +31,7 @@ pub mod value;
 
 pub use encoding::EncodeError;
 pub use error::ProfileError;
-pub use model::{Limits, Profile};
+pub use model::{Limits, LoopbackData, Profile};
 
 pub use plan::Plan;
 pub use point::Point;

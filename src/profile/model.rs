@@ -1,6 +1,7 @@
 //! A meter, checked and ready to work with.
 
 use std::collections::BTreeSet;
+use std::fmt;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,8 @@ pub struct Limits {
     pub interchangeable_reads: bool,
     /// The functions it obeys on address 0.
     pub broadcast_functions: Vec<FunctionCode>,
+    /// What function 08, Return Query Data, sends back, on a meter that has it.
+    pub loopback_data: LoopbackData,
     /// The most registers in one read, 1 to 125.
     pub read_registers: u16,
     /// The most registers in one write, 1 to 123.
@@ -64,6 +67,37 @@ pub struct Limits {
     pub pause: Duration,
 }
 
+/// What a meter sends back when it is asked to return data (function 08, sub-function 0). The
+/// standard lets it be anything (AP 6.8.1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum LoopbackData {
+    /// Any word.
+    #[default]
+    Any,
+    /// 0 alone; any other word is refused.
+    Zero,
+}
+
+impl LoopbackData {
+    /// Whether the meter sends this word back.
+    pub const fn takes(self, word: u16) -> bool {
+        match self {
+            Self::Any => true,
+            Self::Zero => word == 0,
+        }
+    }
+}
+
+impl fmt::Display for LoopbackData {
+    /// As in a profile's file: `any`, `zero`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Any => "any",
+            Self::Zero => "zero",
+        })
+    }
+}
+
 impl Default for Limits {
     /// What the standard allows a meter of which nothing is known.
     fn default() -> Self {
@@ -75,6 +109,7 @@ impl Default for Limits {
             ],
             interchangeable_reads: false,
             broadcast_functions: Vec::new(),
+            loopback_data: LoopbackData::Any,
             read_registers: RegisterRange::MOST,
             write_registers: RegisterBlock::MOST,
             read_holes: false,

@@ -189,6 +189,14 @@ impl Gathering<'_> {
     ) -> Result<Vec<u16>, Failure> {
         let unit = self.inquiry.unit;
         info!("unit {unit}: reading {}", read.range);
+        // A point that one function reads is not read by the other.
+        let mut points = read
+            .points
+            .iter()
+            .filter_map(|index| self.points().get(*index));
+        let is_free = points.all(|point| point.function.is_none());
+        let mut patience = patience;
+        patience.ways.interchangeable_reads &= is_free;
         let request = read.request();
         let response = if is_sure {
             self.client.request(unit, &request, patience)
@@ -224,14 +232,17 @@ impl Gathering<'_> {
 
     /// A read brought nothing, and asking again would not help.
     fn fail(&mut self, read: &PlannedRead, failure: Failure) -> Outcome {
-        if let Failure::Exception(code) = failure {
+        if let Failure::Exception(code) = failure
+            && code != ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND
+        {
             self.hear();
             return self.refused(read, code);
         }
         let fault = Fault::from(&failure);
         match fault {
             Fault::Port => self.end = Some(fault),
-            Fault::Timeout => {
+            // The only exception that comes this far is a gateway's, for a unit that is silent.
+            Fault::Timeout | Fault::Exception(_) => {
                 self.silent += 1;
                 if !self.has_answered || self.silent >= MOST_SILENT_READS {
                     self.end = Some(fault);

@@ -89,6 +89,16 @@ pub struct Taken<'a> {
     pub troubles: Vec<Trouble>,
 }
 
+impl Taken<'_> {
+    /// Whether nothing could be asked because the port was lost before and did not come back.
+    pub fn is_port_away(&self) -> bool {
+        let mut troubles = self.troubles.iter();
+        troubles.any(
+            |trouble| matches!(trouble, Trouble::Unread { failure, .. } if failure.is_port_away()),
+        )
+    }
+}
+
 /// Reads the points of one unit, in as few requests as it is known to allow, and with them the
 /// points that they depend on: each time, for somebody may have changed the setup since. A unit that
 /// does not answer at all, or stops answering, is not asked further: every other read would cost a

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::meter::Meter;
 use crate::codec::{Unit, UnitRange};
-use crate::transport::{Clock, Transport, TransportError};
+use crate::transport::{Clock, OpenError, Transport, TransportError};
 
 /// A line inside the program. What is sent into it is heard by every meter on it at once, and
 /// their answers can be received at once, or after a time that the meters take: pace and silence are
@@ -114,6 +114,11 @@ impl Transport for SimulatedLine {
     fn discard_input(&mut self) -> Result<(), TransportError> {
         let now = self.clock.now();
         self.answers.retain(|(due, _)| *due > now);
+        Ok(())
+    }
+
+    /// Nothing to do: a line inside the program is never lost.
+    fn reopen(&mut self) -> Result<(), OpenError> {
         Ok(())
     }
 }

@@ -21,11 +21,6 @@ pub trait Model: Send + Sync {
         0
     }
 
-    /// Whether function 08 sends this word back.
-    fn echoes(&self, _word: u16) -> bool {
-        true
-    }
-
     /// Whether it is too busy for a request that touches these registers.
     fn is_busy(&self, _range: RegisterRange, _now: Timestamp) -> bool {
         false

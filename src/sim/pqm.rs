@@ -90,11 +90,6 @@ impl Model for Pqm {
         &AREAS
     }
 
-    /// Zeros alone (manual page 191).
-    fn echoes(&self, word: u16) -> bool {
-        word == 0
-    }
-
     fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_> {
         Box::new(self.read(now))
     }

@@ -1,8 +1,11 @@
 //! What can go wrong with a port.
 
 use std::io;
+use std::time::Duration;
 
 use thiserror::Error;
+
+use super::holder::{self, Holders};
 
 /// A port that was open and is no longer usable.
 #[derive(Debug, Error)]
@@ -15,6 +18,25 @@ pub enum TransportError {
         /// What the system said.
         source: io::Error,
     },
+    /// It was lost, and could not be opened again in time.
+    #[error("port {port} did not come back within {}", humantime::format_duration(*.within))]
+    NotBack {
+        /// The port as it was named.
+        port: String,
+        /// How long it was tried.
+        within: Duration,
+        /// What came of the last try.
+        source: OpenError,
+    },
+}
+
+impl TransportError {
+    /// The port as it was named.
+    pub fn port(&self) -> &str {
+        match self {
+            Self::Lost { port, .. } | Self::NotBack { port, .. } => port,
+        }
+    }
 }
 
 /// Why a port cannot be opened.
@@ -35,10 +57,12 @@ pub enum OpenError {
         what: &'static str,
     },
     /// Another program holds it.
-    #[error("port {port} is in use by another program")]
+    #[error("port {port} is in use by {holders}")]
     Busy {
         /// The port as it was named.
         port: String,
+        /// Who holds it, where that was looked for: see [`Self::with_holders`].
+        holders: Holders,
     },
     /// The user may not open it.
     #[error("port {port} is not permitted: {who}")]
@@ -68,6 +92,21 @@ pub enum OpenError {
         /// What the system said.
         source: io::Error,
     },
+}
+
+impl OpenError {
+    /// The same, and for a port in use who holds it. Looking for them goes through all processes:
+    /// done once an error is to be shown, not at each try.
+    #[must_use]
+    pub fn with_holders(self) -> Self {
+        match self {
+            Self::Busy { port, .. } => {
+                let holders = holder::of(&port);
+                Self::Busy { port, holders }
+            }
+            other => other,
+        }
+    }
 }
 
 /// Why there is no pty.

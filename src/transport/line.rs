@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 
-use super::{Clock, Timing, Transport, TransportError};
+use super::{Clock, OpenError, Timing, Transport, TransportError};
 
 /// The most bytes taken from the transport at once.
 const CHUNK: usize = 512;
@@ -18,6 +18,18 @@ pub struct Line {
     /// End of the last byte in either direction; for our own bytes an estimate, since neither a
     /// write nor a drain tells when the wire went quiet.
     quiet_since: Duration,
+    /// How long an adapter needs after its port was opened.
+    settle: Duration,
+    loss: Option<Loss>,
+}
+
+/// A port that was lost and was not opened again yet.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Loss {
+    /// The port as it was named.
+    pub port: String,
+    /// When that was noticed.
+    pub at: Duration,
 }
 
 /// How waiting for silence ended.
@@ -53,7 +65,49 @@ impl Line {
             clock,
             timing,
             quiet_since,
+            settle: Duration::ZERO,
+            loss: None,
         })
+    }
+
+    /// The same line with an adapter that needs so long after its port was opened. That has passed
+    /// now, and passes again whenever the port is reopened.
+    #[must_use]
+    pub const fn settling(mut self, settle: Duration) -> Self {
+        self.settle = settle;
+        self
+    }
+
+    /// Opens the port again, as [`Self::new`] wants it: what arrived before is thrown away, and
+    /// the line counts as busy from this moment.
+    ///
+    /// # Errors
+    /// [`OpenError`] when it cannot be opened, or is gone again.
+    pub fn reopen(&mut self) -> Result<(), OpenError> {
+        self.transport.reopen()?;
+        if !self.settle.is_zero() {
+            self.clock.sleep(self.settle);
+        }
+        match self.transport.discard_input() {
+            Ok(()) => {}
+            Err(TransportError::NotBack { source, .. }) => return Err(source),
+            Err(TransportError::Lost { port, source }) => {
+                return Err(OpenError::Other { port, source });
+            }
+        }
+        self.quiet_since = self.now();
+        self.loss = None;
+        Ok(())
+    }
+
+    /// The loss of the port; `None` while it is open.
+    pub const fn loss(&self) -> Option<&Loss> {
+        self.loss.as_ref()
+    }
+
+    /// Lets this much time pass.
+    pub fn sleep(&self, time: Duration) {
+        self.clock.sleep(time);
     }
 
     /// Monotonic time.
@@ -106,7 +160,8 @@ impl Line {
     /// # Errors
     /// [`TransportError`] when the port is gone.
     pub fn send(&mut self, frame: &[u8]) -> Result<Duration, TransportError> {
-        self.transport.send(frame)?;
+        let sent = self.transport.send(frame);
+        self.heed(sent)?;
         // Counted from when the write is over: however long it was held up, never too early.
         self.quiet_since = self.now() + self.timing.transfer_time(frame.len());
         Ok(self.quiet_since)
@@ -128,10 +183,24 @@ impl Line {
     }
 
     fn receive(&mut self, chunk: &mut [u8], wait: Duration) -> Result<usize, TransportError> {
-        let count = self.transport.receive(chunk, wait)?;
+        let came = self.transport.receive(chunk, wait);
+        let count = self.heed(came)?;
         if count > 0 {
             self.quiet_since = self.quiet_since.max(self.now());
         }
         Ok(count)
+    }
+
+    /// Notes when the port is lost.
+    fn heed<T>(&mut self, result: Result<T, TransportError>) -> Result<T, TransportError> {
+        if let Err(error) = &result
+            && self.loss.is_none()
+        {
+            self.loss = Some(Loss {
+                port: error.port().to_owned(),
+                at: self.now(),
+            });
+        }
+        result
     }
 }

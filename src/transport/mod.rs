@@ -1,9 +1,10 @@
 //! Moves bytes and keeps the line's time.
 //!
 //! A [`Transport`] is a medium: the [`serial`] port, or the simulated line in [`crate::sim`].
-//! [`traced`] wraps any of them and shows the bytes, [`faulty`] spoils them. [`line::Line`] adds what the standard asks of
-//! everybody on a wire: silence before each frame. [`clock`] is where time comes from, so that all
-//! of this runs on a fake one in tests. [`ports`] tells which serial ports there are.
+//! [`traced`] wraps any of them and shows the bytes, [`faulty`] spoils them. [`line::Line`] adds what
+//! the standard asks of everybody on a wire: silence before each frame. [`clock`] is where time comes
+//! from, so that all of this runs on a fake one in tests. [`ports`] tells which serial ports there
+//! are, [`holder`] who has one open; `lock` sees whether one is held before it is opened.
 //!
 //! A server has its clients on an [`Outside`]: a serial port, a pty or sockets ([`outside`],
 //! `pty`, [`listen`]).
@@ -11,8 +12,10 @@
 pub mod clock;
 pub mod error;
 pub mod faulty;
+pub mod holder;
 pub mod line;
 pub mod listen;
+mod lock;
 pub mod outside;
 pub mod ports;
 #[cfg(unix)]
@@ -50,6 +53,13 @@ pub trait Transport: Send {
     /// # Errors
     /// [`TransportError`] when the medium is gone.
     fn discard_input(&mut self) -> Result<(), TransportError>;
+
+    /// Closes the medium, whatever state it is in, and opens it again by the same name. Where that
+    /// fails it stays closed, and can be opened again later.
+    ///
+    /// # Errors
+    /// [`OpenError`] when it cannot be opened; an error of closing is only logged.
+    fn reopen(&mut self) -> Result<(), OpenError>;
 }
 
 impl Transport for Box<dyn Transport> {
@@ -63,5 +73,9 @@ impl Transport for Box<dyn Transport> {
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
         (**self).discard_input()
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
+        (**self).reopen()
     }
 }

@@ -5,23 +5,38 @@
 //! an empty read, so any failure but a time-out or a signal counts as loss. On Windows "not there"
 //! and "busy" are both `NoDevice` and nothing tells them apart, so there the system's own words
 //! have to do.
+//!
+//! A port is held by two locks, for each binds only some: `TIOCEXCL` everybody but root, `flock`
+//! those who ask for it. `serialport` takes the first before it asks for the second, and where the
+//! second fails it takes back the first, *whoever's* it was. So as root the lock is looked at
+//! before that library is let near the port, and as a holder both are taken anew at each request,
+//! since other programs on that library are not as careful.
 
 use std::io::{self, Read, Write};
 use std::path::Path;
 use std::time::Duration;
 
+use log::debug;
 use serialport::{ClearBuffer, DataBits, ErrorKind, FlowControl, SerialPort};
 
-use super::{LineSettings, OpenError, Parity, StopBits, Transport, TransportError};
+use super::holder::Holders;
+use super::{LineSettings, OpenError, Parity, StopBits, Transport, TransportError, lock};
+
+#[cfg(unix)]
+type Port = serialport::TTYPort;
+#[cfg(windows)]
+type Port = serialport::COMPort;
 
 /// How long a write may wait for room in the driver's buffer. A frame is 256 bytes at the most,
 /// so only a dead adapter takes this long.
 const WRITE_WAIT: Duration = Duration::from_secs(2);
 
-/// An open serial port, held exclusively.
+/// A serial port, held exclusively while it is open. Once it fails it is closed at once: an adapter
+/// that is plugged in again gets another name for as long as the dead one is held.
 pub struct Serial {
     name: String,
-    port: Box<dyn SerialPort>,
+    settings: LineSettings,
+    port: Option<Port>,
 }
 
 impl Serial {
@@ -30,65 +45,116 @@ impl Serial {
     /// # Errors
     /// [`OpenError`] tells not there, busy, not permitted and not a serial port apart.
     pub fn open(name: &str, settings: LineSettings) -> Result<Self, OpenError> {
-        if let Some(error) = obstacle(name) {
-            return Err(error);
-        }
-        let port = serialport::new(name, settings.baud)
-            .data_bits(DataBits::Eight)
-            .flow_control(FlowControl::None)
-            .parity(match settings.parity {
-                Parity::None => serialport::Parity::None,
-                Parity::Even => serialport::Parity::Even,
-                Parity::Odd => serialport::Parity::Odd,
-            })
-            .stop_bits(match settings.stop_bits {
-                StopBits::One => serialport::StopBits::One,
-                StopBits::Two => serialport::StopBits::Two,
-            })
-            .open()
-            .map_err(|error| open_error(name, settings, error))?;
         Ok(Self {
             name: name.to_owned(),
-            port,
+            settings,
+            port: Some(open(name, settings)?),
         })
     }
 
-    fn lost(&self, source: impl Into<io::Error>) -> TransportError {
-        TransportError::Lost {
-            port: self.name.clone(),
-            source: source.into(),
+    /// Does something with the open port; when that fails, the port is lost and closed.
+    fn with_port<T>(
+        &mut self,
+        work: impl FnOnce(&mut Port) -> io::Result<T>,
+    ) -> Result<T, TransportError> {
+        let result = match &mut self.port {
+            Some(port) => work(port),
+            None => Err(io::Error::other("it is closed")),
+        };
+        result.map_err(|source| {
+            self.close();
+            TransportError::Lost {
+                port: self.name.clone(),
+                source,
+            }
+        })
+    }
+
+    fn close(&mut self) {
+        let Some(port) = self.port.take() else {
+            return;
+        };
+        // The system waits with closing until all is sent: on a dead adapter, half a minute.
+        if let Err(error) = port.clear(ClearBuffer::Output) {
+            debug!("port {}: while closing: {error}", self.name);
         }
     }
 }
 
 impl Transport for Serial {
     fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
-        self.port
-            .set_timeout(WRITE_WAIT)
-            .map_err(|error| self.lost(error))?;
-        // One system call: the driver takes a frame whole, and a meter resets its receiver at a
-        // gap inside a request.
-        self.port.write_all(frame).map_err(|error| self.lost(error))
+        self.with_port(|port| {
+            hold(port);
+            port.set_timeout(WRITE_WAIT)?;
+            // One system call: the driver takes a frame whole, and a meter resets its receiver at
+            // a gap inside a request.
+            port.write_all(frame)
+        })
     }
 
     fn receive(&mut self, into: &mut [u8], wait: Duration) -> Result<usize, TransportError> {
-        self.port
-            .set_timeout(wait)
-            .map_err(|error| self.lost(error))?;
-        match self.port.read(into) {
-            Ok(0) => Err(self.lost(io::Error::from(io::ErrorKind::UnexpectedEof))),
-            Ok(count) => Ok(count),
-            Err(error) => match error.kind() {
-                io::ErrorKind::TimedOut | io::ErrorKind::Interrupted => Ok(0),
-                _ => Err(self.lost(error)),
-            },
-        }
+        self.with_port(|port| {
+            port.set_timeout(wait)?;
+            match port.read(into) {
+                Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
+                Ok(count) => Ok(count),
+                Err(error) => match error.kind() {
+                    io::ErrorKind::TimedOut | io::ErrorKind::Interrupted => Ok(0),
+                    _ => Err(error),
+                },
+            }
+        })
     }
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
-        self.port
-            .clear(ClearBuffer::Input)
-            .map_err(|error| self.lost(error))
+        self.with_port(|port| Ok(port.clear(ClearBuffer::Input)?))
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
+        self.close();
+        self.port = Some(open(&self.name, self.settings)?);
+        Ok(())
+    }
+}
+
+/// Takes both locks anew. What fails here fails at the next use of the port as well.
+#[cfg(unix)]
+fn hold(port: &mut Port) {
+    let _ = port.set_exclusive(true);
+}
+
+/// The system shares no port.
+#[cfg(not(unix))]
+fn hold(_: &mut Port) {}
+
+fn open(name: &str, settings: LineSettings) -> Result<Port, OpenError> {
+    if let Some(error) = obstacle(name) {
+        return Err(error);
+    }
+    let look = lock::look(name).map_err(|lock::Held| busy(name.to_owned()))?;
+    let port = serialport::new(name, settings.baud)
+        .data_bits(DataBits::Eight)
+        .flow_control(FlowControl::None)
+        .parity(match settings.parity {
+            Parity::None => serialport::Parity::None,
+            Parity::Even => serialport::Parity::Even,
+            Parity::Odd => serialport::Parity::Odd,
+        })
+        .stop_bits(match settings.stop_bits {
+            StopBits::One => serialport::StopBits::One,
+            StopBits::Two => serialport::StopBits::Two,
+        })
+        .open_native()
+        .map_err(|error| open_error(name, settings, error))?;
+    // Not before: the last one to close a port lets DTR drop, which some adapters live on.
+    drop(look);
+    Ok(port)
+}
+
+const fn busy(port: String) -> OpenError {
+    OpenError::Busy {
+        port,
+        holders: Holders::Unknown,
     }
 }
 
@@ -142,7 +208,7 @@ fn open_error(name: &str, settings: LineSettings, error: serialport::Error) -> O
             source: error.into(),
         },
         // The path was there a moment ago, so this is the lock.
-        ErrorKind::NoDevice => OpenError::Busy { port },
+        ErrorKind::NoDevice => busy(port),
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => not_permitted(port),
         ErrorKind::Io(io::ErrorKind::NotFound) => OpenError::NotThere { port },
         ErrorKind::InvalidInput => OpenError::Settings {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use log::trace;
 
-use super::{Clock, Transport, TransportError};
+use super::{Clock, OpenError, Transport, TransportError};
 use crate::codec::rtu::Hex;
 
 /// Wraps a transport and logs what it carries: direction, hex, and the time since the bytes
@@ -52,5 +52,14 @@ impl<T: Transport> Transport for Traced<T> {
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
         self.inner.discard_input()
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
+        let result = self.inner.reopen();
+        match &result {
+            Ok(()) => trace!("opened again"),
+            Err(error) => trace!("not opened again: {error}"),
+        }
+        result
     }
 }

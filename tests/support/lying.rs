@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use meterpoll::codec::rtu::{self, Hex};
 use meterpoll::transport::faulty::{FaultScript, Faulty};
-use meterpoll::transport::{Clock, Timing, Transport, TransportError};
+use meterpoll::transport::{Clock, OpenError, Timing, Transport, TransportError};
 
 #[path = "clock.rs"]
 mod clock;
@@ -88,6 +88,11 @@ impl Transport for Meter {
     }
 
     fn discard_input(&mut self) -> Result<(), TransportError> {
+        self.answers.clear();
+        Ok(())
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
         self.answers.clear();
         Ok(())
     }

@@ -7,6 +7,7 @@ use std::error::Error;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
@@ -21,10 +22,14 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 /// What a meter does with a request: the bytes it answers, if any.
 pub(crate) type Behaviour = dyn FnMut(&[u8]) -> Vec<u8> + Send;
 
+/// Bytes from the client's end upon which the other one is closed. No client sends them.
+const HANG_UP: [u8; 8] = [0xFF, 0x08, 0xDE, 0xAD, 0xDE, 0xAD, 0x00, 0x00];
+
 /// A meter on a pty. It ends when dropped.
 pub(crate) struct PtyMeter {
     path: String,
     seen: Arc<Mutex<Vec<Vec<u8>>>>,
+    answered: Arc<AtomicUsize>,
     thread: Option<JoinHandle<()>>,
     /// Held open, so that the line does not hang up between two clients.
     slave: Option<OwnedFd>,
@@ -33,18 +38,16 @@ pub(crate) struct PtyMeter {
 impl PtyMeter {
     /// A meter that does with every request what `behaviour` says.
     pub(crate) fn new(behaviour: Box<Behaviour>) -> Self {
-        Self::start(behaviour, usize::MAX)
+        Self::hanging_up(behaviour, usize::MAX)
     }
 
-    /// A line that hangs up in place of an answer to this request, counted from 1.
-    pub(crate) fn hanging_up_after(requests: usize) -> Self {
-        Self::start(Box::new(|_| Vec::new()), requests)
-    }
-
-    fn start(mut behaviour: Box<Behaviour>, last: usize) -> Self {
+    /// The same on a line that hangs up in place of an answer to this request, counted from 1.
+    pub(crate) fn hanging_up(mut behaviour: Box<Behaviour>, last: usize) -> Self {
         let (mut master, slave, path) = pair().expect("a pty pair");
         let seen = Arc::new(Mutex::new(Vec::new()));
         let requests = Arc::clone(&seen);
+        let answered = Arc::new(AtomicUsize::new(0));
+        let answers = Arc::clone(&answered);
         let thread = std::thread::spawn(move || {
             let mut bytes = Vec::new();
             let mut chunk = [0; 256];
@@ -55,6 +58,9 @@ impl PtyMeter {
                     && bytes.len() >= length
                 {
                     let request: Vec<u8> = bytes.drain(..length).collect();
+                    if request == HANG_UP {
+                        return;
+                    }
                     let mut requests = requests.lock().expect("nobody panicked");
                     requests.push(request.clone());
                     if requests.len() == last {
@@ -62,12 +68,14 @@ impl PtyMeter {
                     }
                     drop(requests);
                     let _ = master.write_all(&behaviour(&request));
+                    answers.fetch_add(1, Ordering::SeqCst);
                 }
             }
         });
         Self {
             path,
             seen,
+            answered,
             thread: Some(thread),
             slave: Some(slave),
         }
@@ -89,6 +97,27 @@ impl PtyMeter {
             });
             answers.flatten().collect()
         }))
+    }
+
+    /// Hangs up: on return the port is gone.
+    pub(crate) fn hang_up(&mut self) {
+        let written = rustix::io::write(self.client_end(), &HANG_UP);
+        assert_eq!(written.expect("the line is open"), HANG_UP.len());
+        if let Some(thread) = self.thread.take() {
+            thread.join().expect("the meter did not panic");
+        }
+    }
+
+    /// Whether so many requests were answered, with nothing perhaps, and the client has taken all
+    /// the bytes.
+    pub(crate) fn has_answered(&self, requests: usize) -> bool {
+        self.answered.load(Ordering::SeqCst) >= requests
+            && rustix::io::ioctl_fionread(self.client_end()).expect("the line is open") == 0
+    }
+
+    /// The client's end, held open beside the client.
+    pub(crate) fn client_end(&self) -> &OwnedFd {
+        self.slave.as_ref().expect("it is held until the end")
     }
 
     /// The path a client opens.

@@ -12,7 +12,9 @@ use meterpoll::codec::rtu::{self, Destination};
 use meterpoll::codec::{
     ReadFunction, ReadValues, RegisterRange, Reply, Request, Response, Unit, UnitRange,
 };
-use meterpoll::transport::{Clock, Line, LineSettings, Timing, Transport, TransportError};
+use meterpoll::transport::{
+    Clock, Line, LineSettings, OpenError, Timing, Transport, TransportError,
+};
 
 use super::clock::FakeClock;
 
@@ -50,6 +52,16 @@ struct State {
     scheduled: usize,
     endless: Option<Endless>,
     hang_up: Option<Duration>,
+    /// The port is lost while this frame is sent, counted from 1.
+    breaking: Option<usize>,
+    /// When the port is lost again, once it was opened again.
+    next_hang_up: Option<Duration>,
+    /// When the port is there again, once it hung up.
+    back: Option<Duration>,
+    /// What opening it before that comes to; it is not there where nothing is said.
+    absence: Option<fn() -> OpenError>,
+    /// When it was tried to open the port again.
+    reopened: Vec<Duration>,
     sent: Vec<Sent>,
     /// End of the last byte in either direction.
     wire_end: Duration,
@@ -125,6 +137,31 @@ impl ScriptedLine {
         self.state().hang_up = Some(at);
     }
 
+    /// The port is lost while this frame is sent, counted from 1.
+    pub(crate) fn hang_up_at_frame(&self, number: usize) {
+        self.state().breaking = Some(number);
+    }
+
+    /// A port that was lost can be opened again from this moment on.
+    pub(crate) fn come_back(&self, at: Duration) {
+        self.state().back = Some(at);
+    }
+
+    /// Once it was opened again, it is lost at this moment.
+    pub(crate) fn hang_up_again(&self, at: Duration) {
+        self.state().next_hang_up = Some(at);
+    }
+
+    /// Before that it cannot be opened for this reason.
+    pub(crate) fn until_then(&self, error: fn() -> OpenError) {
+        self.state().absence = Some(error);
+    }
+
+    /// When it was tried to open the port again.
+    pub(crate) fn reopened(&self) -> Vec<Duration> {
+        self.state().reopened.clone()
+    }
+
     /// All frames sent so far.
     pub(crate) fn sent(&self) -> Vec<Sent> {
         self.state().sent.clone()
@@ -146,6 +183,10 @@ impl Transport for ScriptedLine {
     fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
         let now = self.clock.now();
         let mut state = self.state();
+        if state.breaking == Some(state.sent.len() + 1) {
+            state.breaking = None;
+            state.hang_up = Some(now);
+        }
         if state.hang_up.is_some_and(|at| at <= now) {
             return Err(Self::lost());
         }
@@ -209,7 +250,27 @@ impl Transport for ScriptedLine {
         let now = self.clock.now();
         let mut state = self.state();
         state.unroll(now);
+        if state.hang_up.is_some_and(|at| at <= now) {
+            return Err(Self::lost());
+        }
         state.due.retain(|(at, _), _| *at > now);
+        Ok(())
+    }
+
+    /// The port is there again once it has come back; what is on the wire goes on meanwhile.
+    fn reopen(&mut self) -> Result<(), OpenError> {
+        let now = self.clock.now();
+        let mut state = self.state();
+        state.reopened.push(now);
+        if state.back.is_none_or(|at| at > now) {
+            return Err(state.absence.map_or_else(
+                || OpenError::NotThere {
+                    port: "scripted".to_owned(),
+                },
+                |absence| absence(),
+            ));
+        }
+        state.hang_up = state.next_hang_up.take();
         Ok(())
     }
 }

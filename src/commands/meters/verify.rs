@@ -31,7 +31,9 @@ pub(super) fn run(arguments: &VerifyMeter, report: &mut Report) -> Result<ExitCo
     let mut found = Found::default();
     let mut result = Ok(());
     for (index, unit) in units.iter().copied().enumerate() {
-        let Taken { row, scales, .. } = asking.ask(unit, &mut client, report);
+        let taken = asking.ask(unit, &mut client, report);
+        let is_away = taken.is_port_away();
+        let Taken { row, scales, .. } = taken;
         let steps = points.iter().map(|point| point.step(&scales));
         let named = points.iter().map(|point| point.name.clone());
         let readings: BTreeMap<String, _> =
@@ -46,12 +48,11 @@ pub(super) fn run(arguments: &VerifyMeter, report: &mut Report) -> Result<ExitCo
         };
         let between = if index > 0 { "\n" } else { "" };
         result = print(format!("{between}{}", verified.text()).as_bytes()).map(drop);
-        let is_lost = row.worst() == Some(Fault::Port);
         let rest = units.len() - index - 1;
-        if is_lost && rest > 0 {
+        if is_away && rest > 0 {
             report::untried_units(rest);
         }
-        if result.is_err() || is_lost || stop.requested().is_some() {
+        if result.is_err() || is_away || stop.requested().is_some() {
             break;
         }
     }

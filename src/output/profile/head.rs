@@ -7,9 +7,9 @@ use super::sheet::Sheet;
 use super::terms;
 use crate::codec::FunctionCode;
 use crate::output::escape;
-use crate::profile::Profile;
 use crate::profile::identity::Identity;
 use crate::profile::model::{Identification, Limits};
+use crate::profile::{LoopbackData, Profile};
 
 /// Name and title, and what there is to say about the meter as a whole.
 pub(super) fn head(profile: &Profile) -> String {
@@ -73,6 +73,10 @@ fn limits(sheet: &mut Sheet, limits: &Limits) {
     match limits.broadcast_functions.len() {
         0 => sheet.text("broadcast", "none"),
         _ => sheet.list("broadcast", broadcast),
+    }
+    match limits.loopback_data {
+        LoopbackData::Any => {}
+        LoopbackData::Zero => sheet.text("loop-back", "sends back 0000 alone"),
     }
     let holes = if limits.read_holes {
         "holes between points allowed"

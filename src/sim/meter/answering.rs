@@ -59,7 +59,7 @@ impl Kind {
         match request {
             Request::Read { range, .. } => range.count() <= limits.read_registers,
             Request::Write(Write::Registers(block)) => block.count() <= limits.write_registers,
-            Request::ReturnQueryData(word) => self.model.echoes(*word),
+            Request::ReturnQueryData(word) => limits.loopback_data.takes(*word),
             Request::Write(_) | Request::ReadExceptionStatus => true,
         }
     }

@@ -14,7 +14,7 @@ use super::script::FaultScript;
 use super::stream::Stream;
 use super::when::Asked;
 use crate::codec::length::{self, Direction, MOST_FRAME_BYTES};
-use crate::transport::{Clock, Timing, Transport, TransportError};
+use crate::transport::{Clock, OpenError, Timing, Transport, TransportError};
 
 /// The most bytes taken from the transport behind at once.
 const CHUNK: usize = 512;
@@ -331,5 +331,10 @@ impl<T: Transport> Transport for Faulty<T> {
             stream.skip(now);
         }
         self.inner.discard_input()
+    }
+
+    fn reopen(&mut self) -> Result<(), OpenError> {
+        self.lose_all();
+        self.inner.reopen()
     }
 }

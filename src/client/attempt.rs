@@ -1,0 +1,307 @@
+//! One attempt: a request goes out once, and its one answer is waited for.
+
+use std::time::Duration;
+
+use log::info;
+
+use super::answer_times::Arrivals;
+use super::belief::{self, Certainty, Echo, Evidence, Expectation, Verdict};
+use super::failure::Failure;
+use super::patience::Patience;
+use super::transaction::{ADAPTER_LATENCY, Client};
+use crate::codec::rtu::{self, Frame};
+use crate::codec::{Reply, Request, Unit};
+use crate::transport::line::Quiet;
+
+/// A gap this long after a damaged answer means that nothing more comes: six periods of an adapter
+/// that holds bytes back.
+const GAP: Duration = Duration::from_millis(100);
+
+/// Unrecognised bytes are kept up to this many, the longest frame behind a longest frame of noise;
+/// older ones are let go, so that endless noise costs no memory.
+const MOST_RECEIVED: usize = 512;
+
+/// Fewer stray bytes than the shortest frame has are noise on an idle line, not a damaged answer.
+const SHORTEST_FRAME: usize = 4;
+
+/// One request on its way.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Asked {
+    pub(super) unit: Unit,
+    pub(super) request: Request,
+    pub(super) frame: Frame,
+    pub(super) patience: Patience,
+}
+
+impl Asked {
+    pub(super) fn new(unit: Unit, request: Request, patience: Patience) -> Self {
+        let frame = rtu::encode_request(unit, &request);
+        Self {
+            unit,
+            request,
+            frame,
+            patience,
+        }
+    }
+
+    fn expectation(&self, echo: Echo, echoes: Option<bool>) -> Expectation<'_> {
+        Expectation::new(self.unit, &self.request, &self.frame, echo, echoes)
+    }
+}
+
+/// An answer that is believed.
+pub(super) struct Answer {
+    pub(super) reply: Reply,
+    /// How long the unit took to begin it, beyond the t3.5 behind the request.
+    pub(super) took: Duration,
+}
+
+/// What has been heard since the request went out.
+#[derive(Default)]
+struct Heard {
+    received: Vec<u8>,
+    arrivals: Arrivals,
+    evidence: Evidence,
+    /// Bytes that were let go: they belong to nothing.
+    forgotten: usize,
+}
+
+impl Client {
+    /// Sends a request once, after the silence and `pause`, and waits for its answer. The answer is
+    /// still owed when this returns: whether it pays is the caller's to say.
+    pub(super) fn attempt(&mut self, asked: &Asked, pause: Duration) -> Result<Answer, Failure> {
+        let result = self.try_once(asked, pause);
+        let counters = self.ledger.of(asked.unit);
+        match &result {
+            Ok(_) => counters.answers += 1,
+            Err(failure) => counters.fail(failure),
+        }
+        result
+    }
+
+    fn try_once(&mut self, asked: &Asked, pause: Duration) -> Result<Answer, Failure> {
+        let pause = if self.sent { pause } else { Duration::ZERO };
+        match self.line.wait_quiet(pause, asked.patience.timeout)? {
+            Quiet::Never { discarded } => return Err(Failure::NeverQuiet { discarded }),
+            Quiet::Reached { discarded: 0 } => {}
+            Quiet::Reached { discarded } => {
+                self.ledger.of(asked.unit).stray += discarded as u64;
+                info!("{discarded} stray bytes thrown away");
+            }
+        }
+        let sent = self.line.send(asked.frame.as_bytes())?;
+        self.sent = true;
+        self.ledger.of(asked.unit).requests += 1;
+        let transfer = self.transfer_time(&asked.request);
+        let owed = (asked.unit, &asked.request, &asked.frame);
+        self.debts.owe(owed, asked.patience, sent, transfer);
+        let mut heard = Heard::default();
+        let result = self.listen(asked, sent, &mut heard);
+        heard.evidence.stray += heard.forgotten;
+        let counters = self.ledger.of(asked.unit);
+        counters.echoes += heard.evidence.echoes as u64;
+        counters.others += heard.evidence.others as u64;
+        let reply = match result {
+            Ok(reply) => reply,
+            Err(Some(lost)) => return Err(lost),
+            Err(None) => {
+                let failure = self.give_up(asked, &heard);
+                // Else they are the answer's own.
+                if failure.is_silence() {
+                    self.ledger.of(asked.unit).stray += heard.evidence.stray as u64;
+                }
+                return Err(failure);
+            }
+        };
+        self.ledger.of(asked.unit).stray += heard.evidence.stray as u64;
+        if heard.evidence.stray > 0 {
+            info!(
+                "{} stray bytes before the answer skipped",
+                heard.evidence.stray
+            );
+        }
+        let now = self.line.now();
+        let in_all = now.saturating_sub(sent).as_secs_f64() * 1000.0;
+        let is_first = self.debts.count(asked.unit) == 1;
+        let took = self.measure(asked, sent, &heard);
+        if is_first {
+            info!("unit {}: answered in {in_all:.1} ms", asked.unit);
+            // A refusal tells nothing of how long an answer takes, nor does a loop-back.
+            if let (Reply::Normal(_), Some(took)) = (&reply, took)
+                && !belief::is_mirrored(&asked.request)
+            {
+                self.answer_times.note(asked.unit, took);
+            }
+        } else {
+            info!(
+                "unit {}: answered, perhaps to an earlier attempt",
+                asked.unit
+            );
+        }
+        Ok(Answer {
+            reply,
+            took: took.unwrap_or_else(|| now.saturating_sub(sent)),
+        })
+    }
+
+    /// Receives until the answer is there. It must begin within the time-out; one that has begun
+    /// gets its transfer time on top. The error is the loss of the port, or nothing when the time
+    /// is up.
+    fn listen(
+        &mut self,
+        asked: &Asked,
+        sent: Duration,
+        heard: &mut Heard,
+    ) -> Result<Reply, Option<Failure>> {
+        let begin_by = sent + asked.patience.timeout;
+        let end_by = begin_by + self.transfer_time(&asked.request) + ADAPTER_LATENCY;
+        let mut deadline = begin_by;
+        loop {
+            let left = deadline.saturating_sub(self.line.now());
+            // At the deadline one last look: a process that was held up has bytes waiting.
+            let came = self
+                .line
+                .receive_into(&mut heard.received, left)
+                .map_err(|lost| Some(lost.into()))?;
+            if came == 0 && left.is_zero() {
+                return Err(None);
+            }
+            if came == 0 {
+                continue;
+            }
+            let is_whole = heard.forgotten == 0 && heard.received.len() <= MOST_RECEIVED;
+            heard.arrivals.note(came, self.line.now(), is_whole);
+            let expectation = asked.expectation(self.echo, self.echoes);
+            match expectation.judge(&heard.received) {
+                Verdict::Answer(reply, before) => {
+                    self.learn_echo(asked, &before, true);
+                    heard.evidence = before;
+                    return Ok(reply);
+                }
+                Verdict::Waiting(found) => heard.evidence = found,
+            }
+            if heard.evidence.mismatch.is_some() {
+                self.drop_late(asked, heard);
+            }
+            heard.forgotten += forget_oldest(&mut heard.received);
+            self.learn_echo(asked, &heard.evidence, false);
+            if left.is_zero() {
+                return Err(None);
+            }
+            deadline = if heard.evidence.has_begun() {
+                end_by
+            } else if heard.evidence.damaged >= Some(Certainty::Likely) {
+                begin_by.min(self.line.now() + GAP)
+            } else {
+                begin_by
+            };
+        }
+    }
+
+    /// A frame of the unit that does not answer this may answer what was asked before.
+    fn drop_late(&mut self, asked: &Asked, heard: &mut Heard) {
+        let others = Some((asked.unit, &asked.frame));
+        while let Some(late) = self
+            .debts
+            .late_in(&heard.received, others, self.echo, self.echoes)
+        {
+            info!(
+                "unit {}: an answer to an earlier request was dropped",
+                late.unit
+            );
+            self.ledger.of(late.unit).late += 1;
+            self.debts.answered(late.unit, &late.frame, self.line.now());
+            heard.received.drain(..late.end);
+            heard.arrivals = Arrivals::useless();
+        }
+        let expectation = asked.expectation(self.echo, self.echoes);
+        if let Verdict::Waiting(found) = expectation.judge(&heard.received) {
+            heard.evidence = found;
+        }
+    }
+
+    /// How long the unit took to begin an answer to a request that had left at `sent`; `None` when
+    /// the bytes do not tell.
+    fn measure(&self, asked: &Asked, sent: Duration, heard: &Heard) -> Option<Duration> {
+        let Evidence { echoes, stray, .. } = heard.evidence;
+        let countable = Evidence {
+            echoes,
+            stray,
+            ..Evidence::default()
+        };
+        if heard.evidence != countable {
+            return None;
+        }
+        let first = echoes * asked.frame.as_bytes().len() + stray;
+        let (at, count) = heard.arrivals.of(first)?;
+        // Bytes that came at once, as adapters deliver them, were on the wire one by one.
+        let count = count.min(belief::answer_length(&asked.request));
+        let timing = self.line.timing();
+        let began = at.saturating_sub(timing.transfer_time(count));
+        Some(began.saturating_sub(sent + timing.silence()))
+    }
+
+    /// The time is up.
+    fn give_up(&mut self, asked: &Asked, heard: &Heard) -> Failure {
+        if heard.evidence.damaged == Some(Certainty::Certain) {
+            self.debts.answered_badly(asked.unit, &asked.frame);
+        }
+        failure(
+            &heard.evidence,
+            heard.received.len(),
+            asked.patience.timeout,
+        )
+    }
+
+    /// An echo shows that the line does so; an answer with nothing before it that it does not, if it
+    /// was asked for once and so is no late one that came ahead of the echo.
+    fn learn_echo(&mut self, asked: &Asked, seen: &Evidence, is_answered: bool) {
+        if seen.echoes > 0 {
+            self.echoes = Some(true);
+        } else if is_answered
+            && self.debts.count(asked.unit) == 1
+            && *seen == Evidence::default()
+            && !belief::is_mirrored(&asked.request)
+        {
+            self.echoes.get_or_insert(false);
+        }
+    }
+}
+
+/// Endless noise costs no memory. Returns how many bytes were let go.
+pub(super) fn forget_oldest(received: &mut Vec<u8>) -> usize {
+    let oldest = received.len().saturating_sub(MOST_RECEIVED);
+    received.drain(..oldest);
+    oldest
+}
+
+/// What the evidence amounts to when the time is up: the most telling thing first.
+fn failure(evidence: &Evidence, received: usize, timeout: Duration) -> Failure {
+    if let Some(found) = &evidence.mismatch {
+        let found = found.clone();
+        return Failure::Mismatch { found };
+    }
+    if evidence.damaged.is_some() {
+        return Failure::Damaged { received };
+    }
+    // Behind other bytes, a last one like the unit's number is as well noise.
+    if let Some((begun, expected)) = evidence.begun
+        && (begun > 1 || received == 1)
+    {
+        return Failure::Truncated {
+            received: begun,
+            expected,
+        };
+    }
+    if evidence.others == 0 && evidence.stray >= SHORTEST_FRAME {
+        return Failure::Damaged { received };
+    }
+    if evidence.echoes > 0 && evidence.others == 0 {
+        return Failure::OnlyEcho;
+    }
+    Failure::Silence {
+        timeout,
+        others: evidence.others,
+        stray: evidence.stray,
+    }
+}

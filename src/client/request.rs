@@ -1,0 +1,284 @@
+//! A request until it is answered or has failed for good: retries, and how a late answer to
+//! something else is told from the right one.
+//!
+//! # What tells a late answer, what that costs and what it proves
+//!
+//! * *Waiting* before something else is asked (`debts`): costs as much again as the time-out, once
+//!   for each request that failed, and less when the late answer is seen. It proves nothing about an
+//!   answer that comes later still. It is always done all the same: a meter that is late would else
+//!   be talked over, and would not hear the next request.
+//! * *The same request again*: costs nothing, and proves all, for whichever answer comes is right.
+//!   So a retry is byte for byte the request that failed.
+//! * *The other of the functions 03 and 04*, where both read the same registers: costs nothing. An
+//!   answer to what was asked before has the wrong function, however late it comes. Once the right
+//!   one has come, the one before will not: a meter answers in the order it was asked. It serves
+//!   once; when the other function is owed an answer as well, there is nothing left to alternate
+//!   with.
+//! * *A loop-back* (function 08): costs a transaction, 25 to 70 ms at 9600 baud with most meters,
+//!   and a time-out where the unit is silent. Its answer proves that nothing asked before will be
+//!   answered any more. Needed where the functions cannot be alternated, or both are owed answers.
+//!   When it meets silence the request is not even sent: the unit would most likely not answer that
+//!   either. It is tried once; a meter without function 08 must not be lost for ever.
+//! * *A second look*: registers that are, word for word, what the unit has just given for something
+//!   else may be a second copy of that answer, as a repeater or a gateway can make it. They are asked
+//!   for once more. Costs one transaction, and only where two blocks are equal. Where it was a copy,
+//!   the time by which it came later is kept free behind every answer from then on.
+//!
+//! The first two always, then the functions, then the loop-back: the cheapest first. For a meter of
+//! which nothing is known only waiting is left, and an answer that is later than that and as long as
+//! the next one is believed: nothing in a frame tells it from the right one.
+
+use std::time::Duration;
+
+use log::info;
+
+use super::attempt::{Answer, Asked};
+use super::debts::Next;
+use super::failure::Failure;
+use super::patience::{Patience, QueryData};
+use super::regain::regain;
+use super::transaction::Client;
+use crate::codec::{ExceptionCode, FunctionCode, Reply, Request, Response, Unit};
+
+/// How long to wait before a unit that was busy is asked again, time after time.
+const BUSY_WAITS: [Duration; 3] = [
+    Duration::from_millis(100),
+    Duration::from_millis(200),
+    Duration::from_millis(400),
+];
+
+/// The word of a loop-back that serves as a barrier, where any word does: unlike noise.
+const BARRIER: u16 = 0xA5C3;
+
+/// So often registers are asked for once more that were the answer to something else.
+const MOST_LOOKS: usize = 4;
+
+/// An answer that may be a second copy of another.
+struct Doubtful {
+    response: Response,
+    /// How long ago the other was believed.
+    age: Duration,
+}
+
+impl Client {
+    /// Sends a request that changes nothing and returns its answer, repeating it when the line
+    /// fails or the unit is busy. A port that was lost is opened again first: it is waited for as
+    /// long as the attempts would take, [`Patience::timeout`] each.
+    ///
+    /// # Errors
+    /// [`Failure`] of the last attempt. A request during which the port is lost is never repeated.
+    pub fn request(
+        &mut self,
+        unit: Unit,
+        request: &Request,
+        patience: Patience,
+    ) -> Result<Response, Failure> {
+        self.repeat(unit, request, patience, false)
+    }
+
+    /// The same for a request that the unit may not answer however often it is asked: a first
+    /// attempt that meets silence is the last one.
+    ///
+    /// # Errors
+    /// As [`Self::request`].
+    pub fn try_request(
+        &mut self,
+        unit: Unit,
+        request: &Request,
+        patience: Patience,
+    ) -> Result<Response, Failure> {
+        self.repeat(unit, request, patience, true)
+    }
+
+    fn repeat(
+        &mut self,
+        unit: Unit,
+        request: &Request,
+        patience: Patience,
+        ends_with_silence: bool,
+    ) -> Result<Response, Failure> {
+        let wanted = Asked::new(unit, request.clone(), patience);
+        regain(&mut self.line, patience)?;
+        let mut asked = self.told_apart(&wanted)?;
+        let give_up = self.line.now() + patience.in_all();
+        let mut retries = 1..=patience.retries;
+        let mut busy_waits = BUSY_WAITS.iter();
+        let mut faults_of_memory = 1..=1;
+        let mut doubtful = Vec::new();
+        let mut pause = patience.pause;
+        loop {
+            let answer = self.attempt(&asked, pause);
+            pause = patience.pause;
+            let failure = match answer {
+                Ok(answer) => match self.believe(&asked, answer, &mut doubtful) {
+                    None if doubtful.len() > MOST_LOOKS => {
+                        self.hold_for_copies(&asked, &doubtful);
+                        doubtful.clear();
+                        self.settle(Next::Unlike(unit))?;
+                        let found = "only copies of what it answered before".to_owned();
+                        Failure::Mismatch { found }
+                    }
+                    None => continue,
+                    Some(Reply::Normal(response)) => return Ok(response),
+                    Some(Reply::Exception { code, .. }) => Failure::Exception(code),
+                },
+                Err(failure) => failure,
+            };
+            match failure {
+                Failure::Exception(ExceptionCode::SERVER_DEVICE_BUSY) => {
+                    self.ledger.of(unit).busy += 1;
+                    let in_time = |wait: &&Duration| self.line.now() + **wait < give_up;
+                    let Some(wait) = busy_waits.next().filter(in_time) else {
+                        return Err(failure);
+                    };
+                    info!("unit {unit}: busy, asking again in {} ms", wait.as_millis());
+                    pause = pause.max(*wait);
+                    continue;
+                }
+                // A meter may take one function only, whatever its profile says; and its refusal
+                // has shown that nothing asked before will be answered any more.
+                Failure::Exception(_) if asked != wanted => {
+                    info!("unit {unit}: refused, asking with the usual function");
+                    asked = wanted.clone();
+                    continue;
+                }
+                Failure::Exception(ExceptionCode::MEMORY_PARITY_ERROR)
+                    if faults_of_memory.next().is_some() =>
+                {
+                    info!("unit {unit}: {failure}; asking once more");
+                }
+                failure => {
+                    let ends = ends_with_silence && failure.is_silence();
+                    let retry = retries
+                        .next()
+                        .filter(|retry| failure.is_worth_a_retry() && !(ends && *retry == 1));
+                    let Some(retry) = retry else {
+                        return Err(failure);
+                    };
+                    info!(
+                        "unit {unit}: {failure}; retry {retry} of {}",
+                        patience.retries
+                    );
+                }
+            }
+            self.ledger.of(unit).retries += 1;
+        }
+    }
+
+    /// Takes an answer as paid; `None` for one that may be a second copy of another and has to be
+    /// asked for once more. `doubtful` holds such ones meanwhile.
+    fn believe(
+        &mut self,
+        asked: &Asked,
+        answer: Answer,
+        doubtful: &mut Vec<Doubtful>,
+    ) -> Option<Reply> {
+        let now = self.line.now();
+        let Asked { unit, frame, .. } = asked;
+        let response = match &answer.reply {
+            Reply::Normal(response) => response,
+            // That was the gateway: the unit itself may still answer.
+            Reply::Exception {
+                code: ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND,
+                ..
+            } => return Some(answer.reply),
+            Reply::Exception { .. } => {
+                self.debts.answered(*unit, frame, now);
+                return Some(answer.reply);
+            }
+        };
+        let since = now.saturating_sub(asked.patience.at_the_most());
+        if doubtful
+            .iter()
+            .any(|doubtful| doubtful.response == *response)
+        {
+            // Both are answers, and the registers really are the same.
+            self.debts.answered(*unit, frame, now);
+        } else if let Some(age) = self.recent.age((since, now), *unit, frame, response) {
+            info!("unit {unit}: the same registers as in an answer before, asking once more");
+            doubtful.push(Doubtful {
+                response: response.clone(),
+                age,
+            });
+            return None;
+        } else if !doubtful.is_empty() {
+            self.hold_for_copies(asked, doubtful);
+        }
+        if let Some(delay) = self.recent.delay(*unit) {
+            self.debts.hold(*unit, now + delay + delay / 2);
+        }
+        self.recent.note(now, *unit, frame, response);
+        self.debts.answered(*unit, frame, now);
+        Some(answer.reply)
+    }
+
+    /// Answers of the unit come twice: all that is under way by now looks like an answer, and every
+    /// answer will from now on.
+    fn hold_for_copies(&mut self, asked: &Asked, copies: &[Doubtful]) {
+        let delay = copies.iter().map(|copy| copy.age).max().unwrap_or_default();
+        let unit = asked.unit;
+        info!(
+            "unit {unit}: answers come twice, {} ms later",
+            delay.as_millis()
+        );
+        self.ledger.of(unit).copies += copies.len() as u64;
+        self.recent.learn_delay(unit, delay);
+        let until = self.line.now() + asked.patience.at_the_most();
+        self.debts.hold(unit, until);
+    }
+
+    /// The form of a request of which no late answer to something else can be taken for its
+    /// answer, as far as the meter's ways give one; and waits as long as that needs.
+    fn told_apart(&mut self, wanted: &Asked) -> Result<Asked, Failure> {
+        let Asked { unit, patience, .. } = *wanted;
+        let other = patience
+            .ways
+            .interchangeable_reads
+            .then(|| wanted.request.with_other_function())
+            .flatten()
+            .map(|request| Asked::new(unit, request, patience));
+        let forms = || std::iter::once(wanted).chain(&other);
+        let same = forms().find(|form| self.debts.awaits(unit, &form.frame));
+        let first = same.unwrap_or(wanted);
+        self.settle(Next::Request(unit, &first.frame))?;
+        if same.is_some() {
+            return Ok(first.clone());
+        }
+        if let Some(form) = forms().find(|form| !self.is_doubtful(form)) {
+            return Ok(form.clone());
+        }
+        self.make_sure(unit, patience)?;
+        // What is left of the doubt nothing can remove.
+        self.debts.forget(unit, wanted.request.function());
+        Ok(wanted.clone())
+    }
+
+    fn is_doubtful(&self, asked: &Asked) -> bool {
+        self.debts.doubt(asked.unit, &asked.request, &asked.frame)
+    }
+
+    /// Sends a loop-back, where the meter has it and its answer cannot be its echo: after its answer
+    /// nothing asked before comes any more.
+    fn make_sure(&mut self, unit: Unit, patience: Patience) -> Result<(), Failure> {
+        let word = match patience.ways.loopback {
+            Some(QueryData::Zero) => 0,
+            Some(QueryData::Any) => BARRIER,
+            None => return Ok(()),
+        };
+        let asked = Asked::new(unit, Request::ReturnQueryData(word), patience);
+        if !self.knows_echo() || self.debts.owes(unit, FunctionCode::Diagnostics) {
+            return Ok(());
+        }
+        info!("unit {unit}: sending a loop-back, behind which no late answer comes");
+        let mut retries = 0..patience.retries;
+        while let Err(failure) = self.attempt(&asked, patience.pause) {
+            let can_help = failure.is_worth_a_retry() && !failure.is_silence();
+            if !can_help || retries.next().is_none() {
+                return Err(failure);
+            }
+            self.ledger.of(unit).retries += 1;
+        }
+        self.debts.answered(unit, &asked.frame, self.line.now());
+        Ok(())
+    }
+}
