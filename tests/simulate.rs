@@ -11,11 +11,23 @@ mod support {
 use std::fs;
 use std::io::{Read, Write};
 use std::os::unix::fs::symlink;
+#[cfg(target_os = "linux")]
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+#[cfg(target_os = "linux")]
+use std::os::unix::process::CommandExt;
 use std::path::Path;
+#[cfg(target_os = "linux")]
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use meterpoll::codec::rtu::check;
+#[cfg(target_os = "linux")]
+use meterpoll::transport::Outside;
 use meterpoll::transport::pty::Pty;
+#[cfg(target_os = "linux")]
+use rustix::fs::{Mode, OFlags};
+#[cfg(target_os = "linux")]
+use rustix::termios::ioctl_tiocexcl;
 use serialport::{SerialPort, TTYPort};
 
 use support::program::Program;
@@ -309,4 +321,39 @@ fn what_others_left_is_never_written_over() {
         .run();
     assert_eq!(fs::read_to_string(&path).unwrap(), "precious");
     fs::remove_file(path).unwrap();
+}
+
+/// Whether an ordinary user can open a port; root can open what is locked as well.
+#[cfg(target_os = "linux")]
+fn opens_for_anybody(path: &str) -> bool {
+    let mut shell = Command::new("/bin/sh");
+    shell
+        .args(["-c", "exec 3<>\"$0\"", path])
+        .stderr(Stdio::null());
+    if fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0) {
+        shell.uid(65534).gid(65534);
+    }
+    shell.current_dir("/").status().expect("a shell").success()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_lock_that_a_client_leaves_behind_goes_when_it_has_gone() {
+    let mut pty = Pty::new().unwrap();
+    let path = pty.path();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o666)).unwrap();
+    assert!(opens_for_anybody(&path));
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+    let client = rustix::fs::open(&path, flags, Mode::empty()).unwrap();
+    ioctl_tiocexcl(&client).unwrap();
+    let hear = |pty: &mut Pty| drop(pty.hear(Duration::from_millis(50)));
+    hear(&mut pty);
+    assert!(!opens_for_anybody(&path));
+    drop(client);
+    // Another test that forks just now holds the client's end open for a moment.
+    let goes = (0..200).any(|_| {
+        hear(&mut pty);
+        opens_for_anybody(&path)
+    });
+    assert!(goes);
 }
