@@ -281,10 +281,43 @@ fn a_request_behind_a_loop_back_that_meets_silence_is_not_sent() {
         Ok(()) => panic!("nothing was asked"),
     }
     assert_eq!(bench.asked()[1..], ["03 0x0001", "08 0x0000"]);
-    // One that does not have the function must not be lost for ever.
+    // Nor the next one.
+    bench
+        .reads(3, LOOPBACK_ONLY)
+        .expect_err("nothing was asked");
+    assert_eq!(bench.asked()[1..], ["03 0x0001", "08 0x0000", "08 0x0000"]);
     bench.answer_after(ms(10));
     bench.reads(2, LOOPBACK_ONLY).expect("an answer");
-    assert_eq!(bench.asked()[1..], ["03 0x0001", "08 0x0000", "03 0x0002"]);
+    assert_eq!(bench.asked()[4..], ["08 0x0000", "03 0x0002"]);
+}
+
+#[test]
+fn a_meter_that_has_no_loop_back_after_all_is_read_again_10_s_later() {
+    let mut bench = Bench::known();
+    bench.be_silent();
+    assert!(bench.reads(1, LOOPBACK_ONLY).is_err());
+    bench.line.meter(|frame| match frame[1] {
+        8 => Vec::new(),
+        _ => vec![(ms(10), answer(frame))],
+    });
+    let mut tries = 0;
+    while bench.reads(2, LOOPBACK_ONLY).is_err() {
+        tries += 1;
+    }
+    assert_eq!(tries, 5);
+    bench.reads(3, LOOPBACK_ONLY).expect("an answer");
+}
+
+#[test]
+fn an_answer_that_is_long_overdue_is_not_reckoned_with() {
+    let mut bench = Bench::known();
+    bench.be_silent();
+    assert!(bench.reads(1, BOTH).is_err());
+    bench.clock.advance(ms(11_100));
+    bench.answer_after(ms(10));
+    bench.reads(2, BOTH).expect("an answer");
+    assert!(bench.reads(3, BOTH).is_ok());
+    assert_eq!(bench.asked()[1..], ["03 0x0001", "03 0x0002", "03 0x0003"]);
 }
 
 #[test]

@@ -202,9 +202,8 @@ fn keys() -> Vec<&'static str> {
 
 #[test]
 fn every_option_it_names_is_in_the_help() {
-    let help = |command| Program::new(&format!("{command} --help")).output().stdout;
     let help = ["read-registers", "loopback", "simulate"]
-        .map(help)
+        .map(|command| Program::new(&format!("{command} --help")).output().stdout)
         .concat();
     let help = String::from_utf8(help).expect("text");
     let mut named: Vec<&str> = README

@@ -257,6 +257,9 @@ impl Client {
     /// was asked for once and so is no late one that came ahead of the echo.
     fn learn_echo(&mut self, asked: &Asked, seen: &Evidence, is_answered: bool) {
         if seen.echoes > 0 {
+            if self.echoes != Some(true) {
+                info!("the line sends our own bytes back");
+            }
             self.echoes = Some(true);
         } else if is_answered
             && self.debts.count(asked.unit) == 1

@@ -8,7 +8,7 @@
 //! talking at once.
 //!
 //! An answer that did not come in that time is *overdue*: it is not waited for any more, but
-//! remembered, for it can come still. A meter answers one request after the other, and what
+//! remembered for some time, for it can come still. A meter answers one request after the other, and what
 //! carries its bytes keeps their order; so once the unit has answered anything that was asked later,
 //! an answer that is overdue will never come.
 
@@ -20,6 +20,10 @@ use super::patience::Patience;
 use super::transaction::ADAPTER_LATENCY;
 use crate::codec::{Frame, FunctionCode, Request, Unit};
 
+/// An answer that is overdue is remembered for this long at least, and for ten times what the meter
+/// may take. Then it is forgotten: a unit is not to be lost for ever because nothing proves it away.
+const LEAST_MEMORY: Duration = Duration::from_secs(10);
+
 /// A request that was sent and not answered.
 #[derive(Clone)]
 struct Debt {
@@ -29,6 +33,8 @@ struct Debt {
     line_until: Duration,
     /// Until when the unit is not asked anything else.
     unit_until: Duration,
+    /// From when on nobody reckons with it any more.
+    forget_at: Duration,
     longest_answer: Duration,
 }
 
@@ -69,7 +75,6 @@ pub(super) enum Next<'a> {
 pub(super) struct Debts(BTreeMap<Unit, Account>);
 
 impl Account {
-    /// Stops waiting for what has not come in time.
     fn expire(&mut self, now: Duration) {
         let (expired, awaited) = std::mem::take(&mut self.awaited)
             .into_iter()
@@ -89,6 +94,13 @@ impl Account {
             self.overdue.retain(|other| !same(&other));
             self.overdue.push(debt);
         }
+        self.overdue.retain(|debt| debt.forget_at > now);
+        let overdue = &self.overdue;
+        let is_overdue = |function: &FunctionCode| {
+            let mut functions = overdue.iter().map(|debt| debt.request.function());
+            functions.any(|other| other == *function)
+        };
+        self.confused.retain(is_overdue);
         self.confused.dedup();
         self.held_until = self.held_until.filter(|until| *until > now);
     }
@@ -113,11 +125,13 @@ impl Debts {
         transfer: Duration,
     ) {
         let begin = sent + patience.timeout + transfer + ADAPTER_LATENCY;
+        let unit_until = begin + patience.at_the_most();
         self.0.entry(unit).or_default().awaited.push(Debt {
             request: request.clone(),
             frame: frame.clone(),
             line_until: begin + patience.timeout,
-            unit_until: begin + patience.at_the_most(),
+            unit_until,
+            forget_at: unit_until + patience.at_the_most().saturating_mul(10).max(LEAST_MEMORY),
             longest_answer: patience.longest_answer,
         });
     }
@@ -175,14 +189,6 @@ impl Debts {
         self.0.get(&unit).is_some_and(awaited)
     }
 
-    /// Whether an answer with this function is owed.
-    pub(super) fn owes(&self, unit: Unit, function: FunctionCode) -> bool {
-        let is_of = |debt: &Debt| debt.request.function() == function;
-        self.0
-            .get(&unit)
-            .is_some_and(|account| account.all().any(is_of))
-    }
-
     /// Whether an answer with this function could come from the unit that belongs to another
     /// request than this.
     pub(super) fn doubt(&self, unit: Unit, request: &Request, frame: &Frame) -> bool {
@@ -204,12 +210,18 @@ impl Debts {
         }
     }
 
-    /// Until when to wait before `next`; `None` when it need not wait. The same request may go out
-    /// at once: a late answer to it is right.
-    pub(super) fn wait_until(&mut self, next: Next<'_>, now: Duration) -> Option<Duration> {
+    /// Stops waiting for what has not come in time, and forgets what is long overdue.
+    pub(super) fn expire(&mut self, now: Duration) {
         for account in self.0.values_mut() {
             account.expire(now);
         }
+        self.0.retain(|_, account| !account.is_settled());
+    }
+
+    /// Until when to wait before `next`; `None` when it need not wait. The same request may go out
+    /// at once: a late answer to it is right.
+    pub(super) fn wait_until(&mut self, next: Next<'_>, now: Duration) -> Option<Duration> {
+        self.expire(now);
         let until = |unit: Unit, debt: &Debt| match next {
             Next::Request(asked, frame) if asked == unit && debt.frame == *frame => None,
             Next::Request(asked, _) | Next::Unlike(asked) if asked != unit => Some(debt.line_until),

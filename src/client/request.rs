@@ -18,7 +18,8 @@
 //!   and a time-out where the unit is silent. Its answer proves that nothing asked before will be
 //!   answered any more. Needed where the functions cannot be alternated, or both are owed answers.
 //!   When it meets silence the request is not even sent: the unit would most likely not answer that
-//!   either. It is tried once; a meter without function 08 must not be lost for ever.
+//!   either. A meter that does not have the function after all is lost for no longer than late
+//!   answers are remembered.
 //! * *A second look*: registers that are, word for word, what the unit has just given for something
 //!   else may be a second copy of that answer, as a repeater or a gateway can make it. They are asked
 //!   for once more. Costs one transaction, and only where two blocks are equal. Where it was a copy,
@@ -38,7 +39,7 @@ use super::failure::Failure;
 use super::patience::{Patience, QueryData};
 use super::regain::regain;
 use super::transaction::Client;
-use crate::codec::{ExceptionCode, FunctionCode, Reply, Request, Response, Unit};
+use crate::codec::{ExceptionCode, Reply, Request, Response, Unit};
 
 /// How long to wait before a unit that was busy is asked again, time after time.
 const BUSY_WAITS: [Duration; 3] = [
@@ -47,8 +48,8 @@ const BUSY_WAITS: [Duration; 3] = [
     Duration::from_millis(400),
 ];
 
-/// The word of a loop-back that serves as a barrier, where any word does: unlike noise.
-const BARRIER: u16 = 0xA5C3;
+/// The first word of a loop-back that serves as a barrier, where any word does: unlike noise.
+const FIRST_BARRIER: u16 = 0xA5C2;
 
 /// So often registers are asked for once more that were the answer to something else.
 const MOST_LOOKS: usize = 4;
@@ -261,14 +262,16 @@ impl Client {
     /// nothing asked before comes any more.
     fn make_sure(&mut self, unit: Unit, patience: Patience) -> Result<(), Failure> {
         let word = match patience.ways.loopback {
+            Some(_) if !self.knows_echo() => return Ok(()),
             Some(QueryData::Zero) => 0,
-            Some(QueryData::Any) => BARRIER,
+            // Another one each time, so that a late one proves nothing.
+            Some(QueryData::Any) => {
+                self.barriers = self.barriers.wrapping_add(1);
+                FIRST_BARRIER ^ self.barriers
+            }
             None => return Ok(()),
         };
         let asked = Asked::new(unit, Request::ReturnQueryData(word), patience);
-        if !self.knows_echo() || self.debts.owes(unit, FunctionCode::Diagnostics) {
-            return Ok(());
-        }
         info!("unit {unit}: sending a loop-back, behind which no late answer comes");
         let mut retries = 0..patience.retries;
         while let Err(failure) = self.attempt(&asked, patience.pause) {

@@ -31,6 +31,8 @@ pub struct Client {
     pub(super) sent: bool,
     pub(super) debts: Debts,
     pub(super) recent: Recent,
+    /// How many loop-backs have served as barriers.
+    pub(super) barriers: u16,
     pub(super) answer_times: AnswerTimes,
     pub(super) ledger: Ledger,
 }
@@ -45,6 +47,7 @@ impl Client {
             sent: false,
             debts: Debts::default(),
             recent: Recent::default(),
+            barriers: 0,
             answer_times: AnswerTimes::default(),
             ledger: Ledger::default(),
         }
@@ -140,6 +143,7 @@ impl Client {
             };
             wait = until.saturating_sub(self.line.now());
         }
+        self.debts.expire(self.line.now());
         Ok(())
     }
 
