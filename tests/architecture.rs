@@ -68,7 +68,10 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
     ("log", EVERYWHERE),
     ("postcard", &["build.rs", "profile/builtin.rs"]),
     ("rust_decimal", EVERYWHERE),
-    ("rustix", &["transport/lock.rs", "transport/pty.rs"]),
+    (
+        "rustix",
+        &["transport/lock.rs", "transport/pty.rs", "transport/pty/"],
+    ),
     ("serde", EVERYWHERE),
     ("serde_json", &["output/json.rs"]),
     ("serialport", &["transport/ports.rs", "transport/serial.rs"]),

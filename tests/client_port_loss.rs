@@ -116,6 +116,17 @@ fn a_port_that_is_lost_while_a_frame_is_sent_comes_back_for_the_next() {
 }
 
 #[test]
+fn a_frame_that_was_under_way_as_the_port_was_lost_has_left_before_the_next_one_goes_out() {
+    let mut bench = Bench::dripping();
+    bench.line.hang_up(ms(4));
+    bench.line.come_back(ms(0));
+    bench.loses(1);
+    assert_eq!(bench.now(), ms(4));
+    bench.reads(1);
+    assert_eq!(bench.sent_at(), [SILENCE, SILENCE + REQUEST + SILENCE]);
+}
+
+#[test]
 fn a_port_that_is_lost_between_two_requests_costs_the_second_one() {
     let mut bench = Bench::dripping();
     bench.reads(1);

@@ -213,7 +213,7 @@ fn every_option_it_names_is_in_the_help() {
     named.sort_unstable();
     named.dedup();
     // These belong to cargo.
-    named.retain(|option| !["--release", "--path"].contains(option));
+    named.retain(|option| !["--release", "--path", "--fuzz-dir"].contains(option));
     assert!(named.len() > 10, "{named:?}");
     for option in named {
         assert!(help.contains(option), "{option} is not in the help");

@@ -21,9 +21,9 @@ fn now() -> Timestamp {
 struct Values(PathBuf);
 
 impl Values {
-    fn new(test: &str, text: impl AsRef<[u8]>) -> Self {
+    fn new(test: &str, content: impl AsRef<[u8]>) -> Self {
         let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{test}-values.csv"));
-        fs::write(&path, text).unwrap();
+        fs::write(&path, content).unwrap();
         Self(path)
     }
 

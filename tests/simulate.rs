@@ -11,11 +11,23 @@ mod support {
 use std::fs;
 use std::io::{Read, Write};
 use std::os::unix::fs::symlink;
+#[cfg(target_os = "linux")]
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+#[cfg(target_os = "linux")]
+use std::os::unix::process::CommandExt;
 use std::path::Path;
+#[cfg(target_os = "linux")]
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use meterpoll::codec::rtu::check;
+#[cfg(target_os = "linux")]
+use meterpoll::transport::Outside;
 use meterpoll::transport::pty::Pty;
+#[cfg(target_os = "linux")]
+use rustix::fs::{Mode, OFlags};
+#[cfg(target_os = "linux")]
+use rustix::termios::ioctl_tiocexcl;
 use serialport::{SerialPort, TTYPort};
 
 use support::program::Program;
@@ -76,7 +88,7 @@ fn a_new_pty_is_read_by_clients_that_come_and_go_until_a_signal_ends_it() {
 #[test]
 fn what_is_simulated_is_what_the_line_inside_the_program_shows() {
     let simulation = Simulation::new("");
-    let what = "-a 17 --meter pqm serial_number current_a_max voltage_an_min -f csv";
+    let what = "-a 17 --meter pqm serial_number current_a_max current_a_min_date -f csv";
     let inside = Program::new(&format!("read-registers -p sim: {what}"));
     assert_eq!(values(&simulation.reading(what)), values(&inside));
 }
@@ -138,12 +150,11 @@ fn a_client_that_holds_the_pty_keeps_others_out() {
     let simulation = Simulation::new("");
     let mut client = open(&simulation.path);
     ask(&mut client, &loopback(17), &loopback(17));
-    let path = &simulation.path;
-    simulation
-        .reading("-a 17 0 --wait 0s -q")
-        .code(3)
-        .stderr(format!("error: port {path} is in use by another program\n"))
-        .run();
+    let output = simulation.reading("-a 17 0 --wait 0s -q").output();
+    assert_eq!(output.status.code(), Some(3));
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    let expected = format!("error: port {} is in use by ", simulation.path);
+    assert!(stderr.starts_with(&expected), "{stderr}");
     ask(&mut client, &loopback(17), &loopback(17));
     drop(client);
     assert_eq!(values(&simulation.reading("-a 17 0 -f csv")), ["65"]);
@@ -310,4 +321,39 @@ fn what_others_left_is_never_written_over() {
         .run();
     assert_eq!(fs::read_to_string(&path).unwrap(), "precious");
     fs::remove_file(path).unwrap();
+}
+
+/// Whether an ordinary user can open a port; root can open what is locked as well.
+#[cfg(target_os = "linux")]
+fn opens_for_anybody(path: &str) -> bool {
+    let mut shell = Command::new("/bin/sh");
+    shell
+        .args(["-c", "exec 3<>\"$0\"", path])
+        .stderr(Stdio::null());
+    if fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0) {
+        shell.uid(65534).gid(65534);
+    }
+    shell.current_dir("/").status().expect("a shell").success()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_lock_that_a_client_leaves_behind_goes_when_it_has_gone() {
+    let mut pty = Pty::new().unwrap();
+    let path = pty.path();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o666)).unwrap();
+    assert!(opens_for_anybody(&path));
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+    let client = rustix::fs::open(&path, flags, Mode::empty()).unwrap();
+    ioctl_tiocexcl(&client).unwrap();
+    let hear = |pty: &mut Pty| drop(pty.hear(Duration::from_millis(50)));
+    hear(&mut pty);
+    assert!(!opens_for_anybody(&path));
+    drop(client);
+    // Another test that forks just now holds the client's end open for a moment.
+    let goes = (0..200).any(|_| {
+        hear(&mut pty);
+        opens_for_anybody(&path)
+    });
+    assert!(goes);
 }

@@ -79,7 +79,7 @@ impl Line {
     }
 
     /// Opens the port again, as [`Self::new`] wants it: what arrived before is thrown away, and
-    /// the line counts as busy from this moment.
+    /// the line counts as busy until this moment, and until the last frame has left it.
     ///
     /// # Errors
     /// [`OpenError`] when it cannot be opened, or is gone again.
@@ -95,7 +95,8 @@ impl Line {
                 return Err(OpenError::Other { port, source });
             }
         }
-        self.quiet_since = self.now();
+        // What was being sent as the port was lost may still be on its way out of the adapter.
+        self.quiet_since = self.quiet_since.max(self.now());
         self.loss = None;
         Ok(())
     }

@@ -83,12 +83,7 @@ impl Outside for Box<dyn Outside> {
 }
 
 /// A serial port with clients at its other end.
-pub struct SerialOutside {
-    name: String,
-    settings: LineSettings,
-    /// Closed only while it is opened again.
-    port: Option<Serial>,
-}
+pub struct SerialOutside(Serial);
 
 impl SerialOutside {
     /// Opens the port.
@@ -96,37 +91,23 @@ impl SerialOutside {
     /// # Errors
     /// What [`Serial::open`] finds.
     pub fn open(name: &str, settings: LineSettings) -> Result<Self, OpenError> {
-        let port = Serial::open(name, settings)?;
-        Ok(Self {
-            name: name.to_owned(),
-            settings,
-            port: Some(port),
-        })
-    }
-
-    fn port(&mut self) -> Result<&mut Serial, TransportError> {
-        self.port.as_mut().ok_or_else(|| TransportError::Lost {
-            port: self.name.clone(),
-            source: std::io::ErrorKind::NotConnected.into(),
-        })
+        Serial::open(name, settings).map(Self)
     }
 }
 
 impl Outside for SerialOutside {
     fn hear(&mut self, wait: Duration) -> Result<Heard, TransportError> {
         let mut chunk = [0; CHUNK];
-        let count = self.port()?.receive(&mut chunk, wait)?;
+        let count = self.0.receive(&mut chunk, wait)?;
         Ok(heard_on_line(&chunk, count))
     }
 
     fn say(&mut self, _: ClientId, bytes: &[u8]) -> Result<(), TransportError> {
-        self.port()?.send(bytes)
+        self.0.send(bytes)
     }
 
     fn hang_up(&mut self, _: ClientId) -> Result<Afterwards, OpenError> {
-        // Closed first: a port is held exclusively.
-        self.port = None;
-        self.port = Some(Serial::open(&self.name, self.settings)?);
+        self.0.reopen()?;
         Ok(Afterwards::Open)
     }
 

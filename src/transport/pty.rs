@@ -3,6 +3,12 @@
 //! Both ends are held: so the line does not hang up while no client has it open, and one that comes
 //! back finds it as it was. What is written while none reads stays there for the next, some
 //! thousand bytes of it; a client throws stale bytes away when it opens a port.
+//!
+//! A client that was killed takes its lock on a serial port with it, since the port is closed then. A
+//! pty that is held open is not: so on Linux it is unlocked when the last client has gone.
+
+#[cfg(target_os = "linux")]
+mod visitors;
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -14,6 +20,8 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
 use rustix::io::{Errno, ioctl_fionread};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+#[cfg(target_os = "linux")]
+use rustix::termios::ioctl_tiocnxcl;
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use super::outside::{CHUNK, heard_on_line};
@@ -37,6 +45,8 @@ pub struct Pty {
 struct Ends {
     ours: File,
     theirs: OwnedFd,
+    #[cfg(target_os = "linux")]
+    visitors: Option<visitors::Visitors>,
 }
 
 impl Pty {
@@ -95,15 +105,16 @@ impl Pty {
         self.ends.as_mut().ok_or(lost)
     }
 
-    /// Makes another pty under the same name.
+    /// Makes another pty under the same name, and hangs up on whoever has the one before.
     fn renew(&mut self, link: &Path) -> io::Result<()> {
         let (ends, path) = Ends::new()?;
-        self.ends = Some(ends);
-        self.path = path;
         // In one step, so that a client never finds nothing there.
         let aside = aside(link);
-        std::os::unix::fs::symlink(&self.path, &aside)?;
-        std::fs::rename(&aside, link).inspect_err(|_| drop(std::fs::remove_file(&aside)))
+        std::os::unix::fs::symlink(&path, &aside)?;
+        std::fs::rename(&aside, link).inspect_err(|_| drop(std::fs::remove_file(&aside)))?;
+        self.path = path;
+        self.ends = Some(ends);
+        Ok(())
     }
 }
 
@@ -138,8 +149,8 @@ impl Outside for Pty {
 
     /// Without a name nobody would know the pty that comes after this one.
     fn hang_up(&mut self, _: ClientId) -> Result<Afterwards, OpenError> {
-        self.ends = None;
         let Some(link) = self.link.clone() else {
+            self.ends = None;
             return Ok(Afterwards::Closed);
         };
         let renewed = self.renew(&link);
@@ -184,8 +195,42 @@ impl Ends {
         attributes.make_raw();
         tcsetattr(&theirs, OptionalActions::Now, &attributes)?;
         fcntl_setfl(&ours, OFlags::RDWR | OFlags::NONBLOCK)?;
-        let ours = File::from(ours);
-        Ok((Self { ours, theirs }, path))
+        let ends = Self {
+            ours: File::from(ours),
+            theirs,
+            #[cfg(target_os = "linux")]
+            visitors: visitors::Visitors::of(&path),
+        };
+        Ok((ends, path))
+    }
+
+    /// Takes away the lock of a client that has gone without.
+    #[cfg(target_os = "linux")]
+    fn unlock(&mut self) {
+        if let Some(visitors) = &mut self.visitors
+            && visitors.have_left()
+        {
+            let _ = ioctl_tiocnxcl(&self.theirs);
+        }
+    }
+
+    /// Nothing tells when the last client has gone.
+    #[cfg(not(target_os = "linux"))]
+    fn unlock(&mut self) {}
+
+    /// What there is to wait for.
+    #[cfg(target_os = "linux")]
+    fn waiting(&self) -> Vec<PollFd<'_>> {
+        let ours = PollFd::from_borrowed_fd(self.ours.as_fd(), PollFlags::IN);
+        let visitors = self.visitors.iter();
+        let visitors = visitors.map(|events| PollFd::new(events, PollFlags::IN));
+        std::iter::once(ours).chain(visitors).collect()
+    }
+
+    /// What there is to wait for.
+    #[cfg(not(target_os = "linux"))]
+    fn waiting(&self) -> Vec<PollFd<'_>> {
+        vec![PollFd::from_borrowed_fd(self.ours.as_fd(), PollFlags::IN)]
     }
 
     /// 0 when nothing came in time, or a signal did.
@@ -195,10 +240,9 @@ impl Ends {
             tv_sec: 3600,
             tv_nsec: 0,
         });
-        let mut waiting = [PollFd::from_borrowed_fd(self.ours.as_fd(), PollFlags::IN)];
-        match poll(&mut waiting, Some(&wait)) {
+        match poll(&mut self.waiting(), Some(&wait)) {
             Ok(0) | Err(Errno::INTR) => return Ok(0),
-            Ok(_) => {}
+            Ok(_) => self.unlock(),
             Err(error) => return Err(error.into()),
         }
         match self.ours.read(into) {

@@ -1,0 +1,6 @@
+#![no_main]
+
+#[path = "../../support/fuzz/mod.rs"]
+mod fuzz;
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| fuzz::chunks::chunks(data));
