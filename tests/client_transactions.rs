@@ -9,7 +9,7 @@ mod script;
 use std::time::Duration;
 
 use meterpoll::client::{Echo, Failure, Patience};
-use meterpoll::codec::{ExceptionCode, FunctionCode, Reply, Request, Response, rtu};
+use meterpoll::codec::{Request, Response, rtu};
 use meterpoll::transport::{LineSettings, TransportError};
 
 use self::script::{Bench, dripped, read, reply, true_reply, true_response, unit};
@@ -44,22 +44,6 @@ fn asked(start: u16, count: u16) -> Vec<u8> {
 /// The true answer to it.
 fn answered(start: u16, count: u16) -> Vec<u8> {
     true_reply(&asked(start, count))
-}
-
-fn refusal(code: ExceptionCode) -> Vec<u8> {
-    let reply = Reply::Exception {
-        function: FunctionCode::ReadHoldingRegisters,
-        code,
-    };
-    rtu::encode_reply(unit(17), &reply).as_bytes().to_vec()
-}
-
-/// What a bad line makes of a frame.
-fn damaged(mut frame: Vec<u8>) -> Vec<u8> {
-    if let Some(last) = frame.last_mut() {
-        *last ^= 0x01;
-    }
-    frame
 }
 
 impl Bench {
