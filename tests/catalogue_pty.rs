@@ -347,15 +347,3 @@ fn every_order_of_bytes_gives_the_same_number() {
         .run();
     }
 }
-
-/// Row 55: the port is not even looked for.
-#[test]
-fn a_read_of_unit_0_is_refused_before_the_port_is_opened() {
-    Program::new("read-registers -p /nonexistent -a 0 0x0000")
-        .code(2)
-        .stderr(
-            "error: unit 0 is the broadcast address, which no meter answers\n\
-             hint: a read needs one meter: --unit 1 to 247\n",
-        )
-        .run();
-}

@@ -81,26 +81,6 @@ fn a_refusal_is_asked_about_once() {
 }
 
 #[test]
-fn a_busy_unit_is_asked_again_after_100_and_200_ms() {
-    let mut bench = refusing(2, 6);
-    bench.assert_reads(Patience {
-        retries: 0,
-        ..Patience::default()
-    });
-    assert_eq!(bench.silences(), [100, 200]);
-    assert_eq!(bench.client.counters(unit(17)).busy, 2);
-    assert_eq!(bench.client.counters(unit(17)).retries, 0);
-}
-
-#[test]
-fn a_unit_that_stays_busy_is_left_alone_after_three_times() {
-    let mut bench = refusing(usize::MAX, 6);
-    bench.assert_refused(Patience::default(), 6);
-    assert_eq!(bench.silences(), [100, 200, 400]);
-    assert!(bench.now() < ms(1000));
-}
-
-#[test]
 fn a_busy_unit_is_not_waited_for_beyond_a_second_when_the_time_out_is_short() {
     let patience = Patience {
         timeout: ms(300),

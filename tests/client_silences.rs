@@ -235,23 +235,6 @@ fn bytes_behind_an_answer_are_thrown_away_and_waited_out() {
 }
 
 #[test]
-fn an_answer_that_comes_twice_is_used_once() {
-    let mut bench = Bench::new();
-    bench.line.meter(|frame| {
-        let answer = true_reply(frame);
-        vec![(ms(40), answer.clone()), (ms(43), answer)]
-    });
-    for start in [0x6B, 0x70, 0x6B, 0x80] {
-        let request = read(start, 3);
-        let response = bench
-            .client
-            .request(unit(17), &request, Patience::default());
-        assert_eq!(response.ok(), Some(true_response(unit(17), start, 3)));
-    }
-    assert_eq!(bench.frames(), 4);
-}
-
-#[test]
 fn every_request_goes_out_in_one_write() {
     let mut bench = Bench::new();
     bench.answer_truly(ms(40));

@@ -9,7 +9,7 @@ mod script;
 use std::time::Duration;
 
 use meterpoll::client::{Echo, Failure, Patience};
-use meterpoll::codec::{ExceptionCode, FunctionCode, Reply, Request, Response, rtu};
+use meterpoll::codec::{Request, Response, rtu};
 use meterpoll::transport::{LineSettings, TransportError};
 
 use self::script::{Bench, dripped, read, reply, true_reply, true_response, unit};
@@ -44,22 +44,6 @@ fn asked(start: u16, count: u16) -> Vec<u8> {
 /// The true answer to it.
 fn answered(start: u16, count: u16) -> Vec<u8> {
     true_reply(&asked(start, count))
-}
-
-fn refusal(code: ExceptionCode) -> Vec<u8> {
-    let reply = Reply::Exception {
-        function: FunctionCode::ReadHoldingRegisters,
-        code,
-    };
-    rtu::encode_reply(unit(17), &reply).as_bytes().to_vec()
-}
-
-/// What a bad line makes of a frame.
-fn damaged(mut frame: Vec<u8>) -> Vec<u8> {
-    if let Some(last) = frame.last_mut() {
-        *last ^= 0x01;
-    }
-    frame
 }
 
 impl Bench {
@@ -199,71 +183,6 @@ fn an_answer_that_never_ends_is_given_its_transfer_time_and_no_more() {
 }
 
 #[test]
-fn every_way_an_answer_breaks_off_is_told_with_its_counts() {
-    let answer = answered(0x6B, 3);
-    for cut in 1..answer.len() {
-        let mut bench = meeting(answer[..cut].to_vec());
-        assert_eq!(
-            bench.failure(0).to_string(),
-            format!("the answer broke off after {cut} of 11 bytes")
-        );
-    }
-}
-
-#[test]
-fn an_answer_that_broke_off_is_asked_for_again() {
-    let mut bench = meeting(answered(0x6B, 3)[..5].to_vec());
-    bench.line.answer(vec![(ms(10), answered(0x6B, 3))]);
-    bench.assert_reads(1);
-    assert_eq!(bench.frames(), 2);
-}
-
-#[test]
-fn every_split_of_an_answer_is_the_same_answer() {
-    let answer = answered(0x6B, 3);
-    for gap in [1, 16, 60, 200].map(ms) {
-        for cut in 1..answer.len() {
-            let mut bench = Bench::new();
-            let (first, second) = answer.split_at(cut);
-            let pieces = vec![(ms(10), first.to_vec()), (ms(10) + gap, second.to_vec())];
-            bench.line.answer(pieces);
-            bench.assert_reads(0);
-        }
-    }
-}
-
-#[test]
-fn a_damaged_answer_is_asked_for_again_100_ms_later() {
-    let mut bench = meeting(damaged(answered(0x6B, 3)));
-    bench.line.answer(vec![(ms(10), answered(0x6B, 3))]);
-    bench.assert_reads(1);
-    let first = SILENCE;
-    assert_eq!(bench.sent_at(), [first, first + REQUEST + ms(10 + 100)]);
-}
-
-#[test]
-fn an_answer_that_is_always_damaged_is_damaged_in_the_end() {
-    let mut bench = Bench::new();
-    bench
-        .line
-        .meter(|frame| vec![(ms(10), damaged(true_reply(frame)))]);
-    assert_eq!(
-        bench.failure(2).to_string(),
-        "the answer was damaged: 11 bytes without a valid CRC"
-    );
-    assert_eq!(bench.now(), SILENCE + (REQUEST + ms(10 + 100)) * 3);
-}
-
-#[test]
-fn a_damaged_exception_is_damaged() {
-    let mut bench = meeting(damaged(refusal(ExceptionCode::ILLEGAL_DATA_ADDRESS)));
-    assert_eq!(
-        bench.failure(0).to_string(),
-        "the answer was damaged: 5 bytes without a valid CRC"
-    );
-}
-
-#[test]
 fn the_echo_of_the_request_is_dropped() {
     for echo in [Echo::Auto, Echo::On] {
         let mut bench = Bench::with(LineSettings::default(), echo);
@@ -286,15 +205,6 @@ fn an_echo_alone_is_told_as_such() {
     assert!(matches!(bench.failure(1), Failure::OnlyEcho));
     assert_eq!(bench.frames(), 2);
     assert_eq!(bench.now(), SILENCE + (REQUEST + T) * 2);
-}
-
-#[test]
-fn half_an_echo_before_the_answer_is_skipped() {
-    let mut bench = Bench::new();
-    bench
-        .line
-        .meter(|frame| vec![(ms(0), frame[..4].to_vec()), (ms(40), true_reply(frame))]);
-    bench.assert_reads(0);
 }
 
 #[test]

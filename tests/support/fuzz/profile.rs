@@ -12,34 +12,6 @@ use super::cursor::Cursor;
 
 const EM21: &str = include_str!("../../../src/profile/meters/em21.toml");
 
-/// What editors and slips of the pen leave in a file.
-const PIECES: [&str; 24] = [
-    "",
-    "\n",
-    "\"",
-    "'''",
-    "=",
-    "{",
-    "}",
-    "[",
-    "]",
-    "[[",
-    ",",
-    "#",
-    "\0",
-    "\r\n",
-    "é",
-    "-",
-    "0x",
-    "1e999",
-    "99999999999999999999",
-    "name = ",
-    "points",
-    "0xFFFF",
-    "\"u64\"",
-    "u32/CDAB*0.1=kWh",
-];
-
 /// Reads the bytes as text, or as changes to a profile.
 pub(crate) fn profile(data: &[u8]) {
     let mut cursor = Cursor::new(data);
@@ -65,8 +37,9 @@ fn changed(cursor: &mut Cursor) -> String {
     for _ in 0..=cursor.below(4) {
         let start = cursor.below(65_536) % text.len();
         let end = text.len().min(start + cursor.below(40));
-        let piece = cursor.pick(&PIECES);
-        text.splice(start..end, piece.chars());
+        let length = cursor.below(20);
+        let piece = cursor.take(length);
+        text.splice(start..end, String::from_utf8_lossy(&piece).chars());
     }
     text.into_iter().collect()
 }
