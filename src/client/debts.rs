@@ -43,10 +43,9 @@ struct Debt {
 struct Account {
     /// Answers that are waited for, in the order of their requests.
     awaited: Vec<Debt>,
-    /// The last answer of each function that is not waited for any more.
+    /// Answers that are not waited for any more, in the order of their requests, all of them before
+    /// those awaited.
     overdue: Vec<Debt>,
-    /// Functions of which answers to more than one request are overdue.
-    confused: Vec<FunctionCode>,
     /// Until when nothing else is asked, whatever comes.
     held_until: Option<Duration>,
 }
@@ -80,33 +79,25 @@ impl Account {
             .into_iter()
             .partition(|debt| debt.unit_until <= now);
         self.awaited = awaited;
-        for debt in expired {
-            let function = debt.request.function();
-            let same = |other: &&Debt| other.request.function() == function;
-            if self
-                .overdue
-                .iter()
-                .find(same)
-                .is_some_and(|other| other.frame != debt.frame)
-            {
-                self.confused.push(function);
-            }
-            self.overdue.retain(|other| !same(&other));
-            self.overdue.push(debt);
-        }
+        let expired: Vec<Debt> = expired;
+        self.overdue.extend(expired);
         self.overdue.retain(|debt| debt.forget_at > now);
-        let overdue = &self.overdue;
-        let is_overdue = |function: &FunctionCode| {
-            let mut functions = overdue.iter().map(|debt| debt.request.function());
-            functions.any(|other| other == *function)
-        };
-        self.confused.retain(is_overdue);
-        self.confused.dedup();
         self.held_until = self.held_until.filter(|until| *until > now);
     }
 
     fn all(&self) -> impl Iterator<Item = &Debt> {
         self.overdue.iter().chain(&self.awaited)
+    }
+
+    /// The answer to the oldest of equal requests is there: which of them it answers, nothing in it
+    /// tells, and the others can still be answered.
+    fn pay(&mut self, frame: &Frame) {
+        if let Some(index) = self.overdue.iter().position(|debt| debt.frame == *frame) {
+            self.overdue.drain(..=index);
+        } else if let Some(index) = self.awaited.iter().position(|debt| debt.frame == *frame) {
+            self.overdue.clear();
+            self.awaited.drain(..=index);
+        }
     }
 
     fn is_settled(&self) -> bool {
@@ -153,19 +144,13 @@ impl Debts {
         self.0.get(&unit).map_or(0, |account| account.all().count())
     }
 
-    /// An answer to this request of a unit has come, at `now`: what was asked before it will not
-    /// be answered any more. When it was late, the next can be as late.
+    /// An answer to this request of a unit has come, at `now`: what was asked before the oldest such
+    /// request will not be answered any more. When it was late, the next can be as late.
     pub(super) fn answered(&mut self, unit: Unit, frame: &Frame, now: Duration) {
         let Some(account) = self.0.get_mut(&unit) else {
             return;
         };
-        if let Some(index) = account.awaited.iter().position(|debt| debt.frame == *frame) {
-            account.awaited.drain(..=index);
-            account.overdue.clear();
-            account.confused.clear();
-        } else {
-            account.overdue.retain(|debt| debt.frame != *frame);
-        }
+        account.pay(frame);
         for debt in &mut account.awaited {
             debt.unit_until = debt.unit_until.max(now + debt.longest_answer);
         }
@@ -176,10 +161,14 @@ impl Debts {
 
     /// What was the answer to this request, for all that can be told, has come damaged.
     pub(super) fn answered_badly(&mut self, unit: Unit, frame: &Frame) {
-        if let Some(account) = self.0.get_mut(&unit)
-            && let Some(index) = account.awaited.iter().position(|debt| debt.frame == *frame)
-        {
-            account.awaited.remove(index);
+        let Some(account) = self.0.get_mut(&unit) else {
+            return;
+        };
+        for debts in [&mut account.overdue, &mut account.awaited] {
+            if let Some(index) = debts.iter().position(|debt| debt.frame == *frame) {
+                debts.remove(index);
+                return;
+            }
         }
     }
 
@@ -194,9 +183,9 @@ impl Debts {
     pub(super) fn doubt(&self, unit: Unit, request: &Request, frame: &Frame) -> bool {
         self.0.get(&unit).is_some_and(|account| {
             let function = request.function();
-            let mut debts = account.all();
-            account.confused.contains(&function)
-                || debts.any(|debt| debt.request.function() == function && debt.frame != *frame)
+            account
+                .all()
+                .any(|debt| debt.request.function() == function && debt.frame != *frame)
         })
     }
 
@@ -206,7 +195,6 @@ impl Debts {
             account
                 .overdue
                 .retain(|debt| debt.request.function() != function);
-            account.confused.retain(|confused| *confused != function);
         }
     }
 

@@ -137,9 +137,11 @@ impl Client {
                     continue;
                 }
                 // A meter may take one function only, whatever its profile says; and its refusal
-                // has shown that nothing asked before will be answered any more.
+                // has shown that nothing asked before will be answered any more. When it was asked
+                // more than once, the other attempts may be.
                 Failure::Exception(_) if asked != wanted => {
                     info!("unit {unit}: refused, asking with the usual function");
+                    self.settle(Next::Request(unit, &wanted.frame))?;
                     asked = wanted.clone();
                     continue;
                 }
