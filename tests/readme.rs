@@ -212,8 +212,10 @@ fn every_option_it_names_is_in_the_help() {
         .collect();
     named.sort_unstable();
     named.dedup();
-    // These belong to cargo.
-    named.retain(|option| !["--release", "--path", "--fuzz-dir"].contains(option));
+    // These belong to cargo, and to the soak.
+    let cargo = ["--release", "--path", "--fuzz-dir", "--bench"];
+    let soak = ["--transactions", "--faults", "--seed"];
+    named.retain(|option| !cargo.contains(option) && !soak.contains(option));
     assert!(named.len() > 10, "{named:?}");
     for option in named {
         assert!(help.contains(option), "{option} is not in the help");
