@@ -389,6 +389,26 @@ fn a_second_copy_that_comes_late_is_not_the_answer_to_the_next_register() {
 }
 
 #[test]
+fn a_second_copy_of_a_late_answer_is_not_the_answer_to_the_next_register() {
+    for first in [1100, 1500, 1900] {
+        for later in [5, 30, 150, 400] {
+            let mut bench = Bench::new();
+            let mut is_late = true;
+            bench.line.meter(move |frame| {
+                if std::mem::take(&mut is_late) {
+                    return twice(frame, ms(first), ms(later));
+                }
+                vec![(ms(500), answer(frame))]
+            });
+            assert!(bench.reads(1, Ways::default()).is_err());
+            for address in 2..5 {
+                bench.reads(address, Ways::default()).expect("an answer");
+            }
+        }
+    }
+}
+
+#[test]
 fn registers_that_really_are_the_same_cost_one_more_request_and_no_waiting() {
     let mut bench = Bench::new();
     bench.line.meter(|_| {

@@ -209,8 +209,7 @@ impl Client {
                 "unit {}: an answer to an earlier request was dropped",
                 late.unit
             );
-            self.ledger.of(late.unit).late += 1;
-            self.debts.answered(late.unit, &late.frame, self.line.now());
+            self.drop_answer(&late);
             heard.received.drain(..late.end);
             heard.arrivals = Arrivals::useless();
         }

@@ -16,7 +16,7 @@ use std::time::Duration;
 use super::belief::{Echo, Expectation, Verdict};
 use super::patience::Patience;
 use super::transaction::ADAPTER_LATENCY;
-use crate::codec::{Frame, FunctionCode, Request, Unit};
+use crate::codec::{Frame, FunctionCode, Reply, Request, Unit};
 
 /// An answer that is overdue is remembered for this long at least, and for ten times what the meter
 /// may take. Then it is forgotten: a unit is not to be lost for ever because nothing proves it away.
@@ -51,6 +51,7 @@ struct Account {
 pub(super) struct Late {
     pub(super) unit: Unit,
     pub(super) frame: Frame,
+    pub(super) reply: Reply,
     /// How many of the bytes it was found in it takes, together with all before it.
     pub(super) end: usize,
 }
@@ -241,9 +242,10 @@ impl Debts {
             }
             let expectation = Expectation::new(unit, &debt.request, &debt.frame, echo, echoes);
             match expectation.judge_to(received) {
-                (Verdict::Answer(..), end) => Some(Late {
+                (Verdict::Answer(reply, _), end) => Some(Late {
                     unit,
                     frame: debt.frame.clone(),
+                    reply,
                     end,
                 }),
                 _ => None,

@@ -8,7 +8,7 @@ use crate::codec::{Frame, Response, Unit};
 /// So many answers are kept at the most.
 const MOST: usize = 64;
 
-/// An answer that was believed.
+/// An answer that was believed, or came late and was thrown away.
 struct Answer {
     at: Duration,
     unit: Unit,
@@ -26,7 +26,7 @@ pub(super) struct Recent {
 }
 
 impl Recent {
-    /// One more answer was believed at `at`.
+    /// One more answer came at `at`.
     pub(super) fn note(&mut self, at: Duration, unit: Unit, frame: &Frame, response: &Response) {
         if self.answers.len() == MOST {
             self.answers.pop_front();

@@ -9,7 +9,7 @@ use super::answer_times::AnswerTimes;
 use super::attempt::{Asked, forget_oldest};
 use super::belief::{self, Echo};
 use super::counters::{Counters, Ledger};
-use super::debts::{Debts, Next};
+use super::debts::{Debts, Late, Next};
 use super::failure::Failure;
 use super::patience::Patience;
 use super::recent::Recent;
@@ -134,8 +134,7 @@ impl Client {
             while let Some(late) = self.debts.late_in(&received, None, self.echo, self.echoes) {
                 info!("unit {}: a late answer was thrown away", late.unit);
                 received.drain(..late.end);
-                self.debts.answered(late.unit, &late.frame, self.line.now());
-                self.ledger.of(late.unit).late += 1;
+                self.drop_answer(&late);
             }
             forget_oldest(&mut received);
             let Some(until) = self.debts.wait_until(next, self.line.now()) else {
@@ -145,6 +144,16 @@ impl Client {
         }
         self.debts.expire(self.line.now());
         Ok(())
+    }
+
+    /// Takes a late answer as paid. It is remembered, for a second copy of it may follow.
+    pub(super) fn drop_answer(&mut self, late: &Late) {
+        let now = self.line.now();
+        self.ledger.of(late.unit).late += 1;
+        if let Reply::Normal(response) = &late.reply {
+            self.recent.note(now, late.unit, &late.frame, response);
+        }
+        self.debts.answered(late.unit, &late.frame, now);
     }
 
     /// How long the normal answer to a request takes on the wire.

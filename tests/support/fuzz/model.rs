@@ -18,6 +18,8 @@ pub(crate) enum Manner {
     Late,
     /// Answers are in time and may come twice.
     Copies,
+    /// Answers may be late, missing, or in pieces, and may come twice; nothing is asked twice.
+    LateCopies,
     /// Nothing is wrong.
     Good,
 }
@@ -43,6 +45,11 @@ impl Model {
         }
     }
 
+    /// Whether answers may come twice.
+    pub(crate) fn makes_copies(&self) -> bool {
+        matches!(self.manner, Manner::Copies | Manner::LateCopies)
+    }
+
     /// What comes back to a request whose last byte has left the wire at `end`.
     pub(crate) fn answer(&mut self, frame: &[u8], end: Duration) -> Vec<Chunk> {
         let mut chunks = Vec::new();
@@ -50,7 +57,7 @@ impl Model {
             chunks.push((Duration::ZERO, frame.to_vec()));
         }
         let limit = match self.manner {
-            Manner::Late => 1940,
+            Manner::Late | Manner::LateCopies => 1940,
             Manner::Copies => 500,
             Manner::Good => 40,
         };
@@ -63,6 +70,7 @@ impl Model {
         let kind = match self.manner {
             Manner::Late => self.cursor.below(16),
             Manner::Copies => 14 + self.cursor.below(4),
+            Manner::LateCopies => self.cursor.pick(&[0, 8, 9, 14, 16]),
             Manner::Good => 14,
         };
         chunks.extend(self.spoil(frame, whole, delay, kind));

@@ -44,6 +44,9 @@ pub(crate) fn session(data: &[u8]) {
         let (address, count) = (cursor.byte(), 1 + cursor.byte() % 5);
         let number = cursor.pick(&[17, 17, 17, 18, 4]);
         session.patience.retries = u32::from(cursor.byte() % 3);
+        if session.model().manner == Manner::LateCopies {
+            session.patience.retries = 0;
+        }
         let idle = u64::from(cursor.byte());
         session.bench.clock.advance(Duration::from_millis(idle * 4));
         if cursor.below(64) == 0 {
@@ -85,7 +88,12 @@ impl Session {
             baud: cursor.pick(&[9600, 9600, 19_200, 115_200]),
             ..LineSettings::default()
         };
-        let manner = cursor.pick(&[Manner::Late, Manner::Late, Manner::Copies]);
+        let manner = cursor.pick(&[
+            Manner::Late,
+            Manner::Late,
+            Manner::Copies,
+            Manner::LateCopies,
+        ]);
         let echo = cursor.pick(&[false, false, true]);
         let ways = Ways {
             interchangeable_reads: cursor.chance(),
@@ -183,7 +191,7 @@ impl Session {
         attempts += u32::from(ways.interchangeable_reads) * (1 + retries);
         attempts += u32::from(ways.loopback.is_some()) * (1 + retries);
         let mut held = T;
-        if self.model().manner == Manner::Copies {
+        if self.model().makes_copies() {
             // Four more looks, and as long as a copy may take.
             attempts += 4 * (1 + retries);
             held += T * (1 + retries);
@@ -201,7 +209,7 @@ impl Session {
 
     /// The line is good from now on.
     fn ends(mut self) {
-        if self.has_lost_port || self.model().manner == Manner::Copies {
+        if self.has_lost_port || self.model().makes_copies() {
             self.bench.clock.advance(T * 10);
         }
         self.model().manner = Manner::Good;
