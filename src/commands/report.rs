@@ -304,6 +304,10 @@ pub(super) fn failure_hint(failure: &Failure) -> Option<&'static str> {
         Failure::Mismatch { .. } => {
             "a late answer or a second master on the line; a longer --timeout helps with the first"
         }
+        Failure::Ambiguous => {
+            "the meter has missed more than one read: a longer --timeout helps when it is slow; else \
+             try again in ten seconds"
+        }
         Failure::NeverQuiet { .. } => {
             "another master may be talking on this line, or its bias resistors are missing"
         }
