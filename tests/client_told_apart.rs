@@ -121,7 +121,7 @@ fn an_answer_later_than_the_wait_has_the_wrong_function() {
 }
 
 #[test]
-fn an_answer_that_never_comes_makes_no_difference_once_the_next_one_has_come() {
+fn the_other_function_is_used_for_as_long_as_the_late_answer_is_remembered() {
     let mut bench = Bench::new();
     bench.be_silent();
     assert!(bench.reads(1, FUNCTIONS_ONLY).is_err());
@@ -129,9 +129,17 @@ fn an_answer_that_never_comes_makes_no_difference_once_the_next_one_has_come() {
     for address in 2..5 {
         bench.reads(address, FUNCTIONS_ONLY).expect("an answer");
     }
+    bench.clock.advance(ms(10_000));
+    bench.reads(5, FUNCTIONS_ONLY).expect("an answer");
     assert_eq!(
         bench.asked(),
-        ["03 0x0001", "04 0x0002", "03 0x0003", "03 0x0004"]
+        [
+            "03 0x0001",
+            "04 0x0002",
+            "04 0x0003",
+            "04 0x0004",
+            "03 0x0005"
+        ]
     );
 }
 

@@ -8,9 +8,7 @@
 //! talking at once.
 //!
 //! An answer that did not come in that time is *overdue*: it is not waited for any more, but
-//! remembered for some time, for it can come still. A meter answers one request after the other, and what
-//! carries its bytes keeps their order; so once the unit has answered anything that was asked later,
-//! an answer that is overdue will never come.
+//! remembered for some time, for it can come still.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -43,8 +41,7 @@ struct Debt {
 struct Account {
     /// Answers that are waited for, in the order of their requests.
     awaited: Vec<Debt>,
-    /// Answers that are not waited for any more, in the order of their requests, all of them before
-    /// those awaited.
+    /// Answers that are not waited for any more, in the order of their requests.
     overdue: Vec<Debt>,
     /// Until when nothing else is asked, whatever comes.
     held_until: Option<Duration>,
@@ -76,12 +73,8 @@ pub(super) struct Debts(BTreeMap<Unit, Account>);
 
 impl Account {
     fn expire(&mut self, now: Duration) {
-        let (expired, awaited) = std::mem::take(&mut self.awaited)
-            .into_iter()
-            .partition(|debt| debt.unit_until <= now);
-        self.awaited = awaited;
-        let expired: Vec<Debt> = expired;
-        self.overdue.extend(expired);
+        let is_late = |debt: &mut Debt| debt.unit_until <= now;
+        self.overdue.extend(self.awaited.extract_if(.., is_late));
         self.overdue.retain(|debt| debt.forget_at > now);
         self.held_until = self.held_until.filter(|until| *until > now);
     }
@@ -93,11 +86,11 @@ impl Account {
     /// The answer to the oldest of equal requests is there: which of them it answers, nothing in it
     /// tells, and the others can still be answered.
     fn pay(&mut self, frame: &Frame) {
-        if let Some(index) = self.overdue.iter().position(|debt| debt.frame == *frame) {
-            self.overdue.drain(..=index);
-        } else if let Some(index) = self.awaited.iter().position(|debt| debt.frame == *frame) {
-            self.overdue.clear();
-            self.awaited.drain(..=index);
+        for debts in [&mut self.overdue, &mut self.awaited] {
+            if let Some(index) = debts.iter().position(|debt| debt.frame == *frame) {
+                debts.remove(index);
+                return;
+            }
         }
     }
 
@@ -145,8 +138,8 @@ impl Debts {
         self.0.get(&unit).map_or(0, |account| account.all().count())
     }
 
-    /// An answer to this request of a unit has come, at `now`: what was asked before the oldest such
-    /// request will not be answered any more. When it was late, the next can be as late.
+    /// An answer to this request of a unit has come, at `now`. When it was late, the next can be as
+    /// late.
     pub(super) fn answered(&mut self, unit: Unit, frame: &Frame, now: Duration) {
         let Some(account) = self.0.get_mut(&unit) else {
             return;
@@ -160,16 +153,17 @@ impl Debts {
         }
     }
 
+    /// Nothing that is overdue of this unit will come any more.
+    pub(super) fn is_clear(&mut self, unit: Unit) {
+        if let Some(account) = self.0.get_mut(&unit) {
+            account.overdue.clear();
+        }
+    }
+
     /// What was the answer to this request, for all that can be told, has come damaged.
     pub(super) fn answered_badly(&mut self, unit: Unit, frame: &Frame) {
-        let Some(account) = self.0.get_mut(&unit) else {
-            return;
-        };
-        for debts in [&mut account.overdue, &mut account.awaited] {
-            if let Some(index) = debts.iter().position(|debt| debt.frame == *frame) {
-                debts.remove(index);
-                return;
-            }
+        if let Some(account) = self.0.get_mut(&unit) {
+            account.pay(frame);
         }
     }
 

@@ -10,13 +10,13 @@
 //! * *The same request again*: costs nothing, and proves all, for whichever answer comes is right.
 //!   So a retry is byte for byte the request that failed.
 //! * *The other of the functions 03 and 04*, where both read the same registers: costs nothing. An
-//!   answer to what was asked before has the wrong function, however late it comes. Once the right
-//!   one has come, the one before will not: a meter answers in the order it was asked. It serves
-//!   once; when the other function is owed an answer as well, there is nothing left to alternate
-//!   with.
+//!   answer to what was asked before has the wrong function, however late it comes. It is used for as
+//!   long as late answers are remembered, and serves for one failure in that time; when the other
+//!   function is owed an answer as well, there is nothing left to alternate with.
 //! * *A loop-back* (function 08): costs a transaction, 25 to 70 ms at 9600 baud with most meters,
 //!   and a time-out where the unit is silent. Its answer proves that nothing asked before will be
-//!   answered any more. Needed where the functions cannot be alternated, or both are owed answers.
+//!   answered any more: a meter answers one request after the other, and what carries its bytes
+//!   keeps their order. Needed where the functions cannot be alternated, or both are owed answers.
 //!   When it meets silence the request is not even sent: the unit would most likely not answer that
 //!   either. A meter that does not have the function after all is lost for no longer than late
 //!   answers are remembered.
@@ -36,7 +36,7 @@ use log::info;
 use super::attempt::{Answer, Asked};
 use super::debts::Next;
 use super::failure::Failure;
-use super::patience::{Patience, QueryData};
+use super::patience::{Patience, QueryData, Ways};
 use super::regain::regain;
 use super::transaction::Client;
 use crate::codec::{ExceptionCode, Reply, Request, Response, Unit};
@@ -136,12 +136,11 @@ impl Client {
                     pause = pause.max(*wait);
                     continue;
                 }
-                // A meter may take one function only, whatever its profile says; and its refusal
-                // has shown that nothing asked before will be answered any more. When it was asked
-                // more than once, the other attempts may be.
+                // A meter may take one function only, whatever its profile says.
                 Failure::Exception(_) if asked != wanted => {
                     info!("unit {unit}: refused, asking with the usual function");
                     self.settle(Next::Request(unit, &wanted.frame))?;
+                    self.make_sure(&wanted)?;
                     asked = wanted.clone();
                     continue;
                 }
@@ -250,9 +249,7 @@ impl Client {
         if let Some(form) = forms().find(|form| !self.is_doubtful(form)) {
             return Ok(form.clone());
         }
-        self.make_sure(unit, patience)?;
-        // What is left of the doubt nothing can remove.
-        self.debts.forget(unit, wanted.request.function());
+        self.make_sure(wanted)?;
         Ok(wanted.clone())
     }
 
@@ -260,19 +257,32 @@ impl Client {
         self.debts.doubt(asked.unit, &asked.request, &asked.frame)
     }
 
-    /// Sends a loop-back, where the meter has it and its answer cannot be its echo: after its answer
-    /// nothing asked before comes any more.
-    fn make_sure(&mut self, unit: Unit, patience: Patience) -> Result<(), Failure> {
-        let word = match patience.ways.loopback {
-            Some(_) if !self.knows_echo() => return Ok(()),
-            Some(QueryData::Zero) => 0,
+    /// Makes as sure as can be that no late answer is taken for the one to this.
+    fn make_sure(&mut self, wanted: &Asked) -> Result<(), Failure> {
+        if let Some(word) = self.barrier(wanted.patience.ways) {
+            self.pass_barrier(wanted, word)?;
+        }
+        // What is left of the doubt nothing can remove.
+        self.debts.forget(wanted.unit, wanted.request.function());
+        Ok(())
+    }
+
+    /// The word of a loop-back, where the meter has it and its answer cannot be its echo.
+    fn barrier(&mut self, ways: Ways) -> Option<u16> {
+        match ways.loopback? {
+            _ if !self.knows_echo() => None,
+            QueryData::Zero => Some(0),
             // Another one each time, so that a late one proves nothing.
-            Some(QueryData::Any) => {
+            QueryData::Any => {
                 self.barriers = self.barriers.wrapping_add(1);
-                FIRST_BARRIER ^ self.barriers
+                Some(FIRST_BARRIER ^ self.barriers)
             }
-            None => return Ok(()),
-        };
+        }
+    }
+
+    /// Sends a loop-back: after its answer nothing asked before comes any more.
+    fn pass_barrier(&mut self, wanted: &Asked, word: u16) -> Result<(), Failure> {
+        let Asked { unit, patience, .. } = *wanted;
         let asked = Asked::new(unit, Request::ReturnQueryData(word), patience);
         info!("unit {unit}: sending a loop-back, behind which no late answer comes");
         let mut retries = 0..patience.retries;
@@ -284,6 +294,7 @@ impl Client {
             self.ledger.of(unit).retries += 1;
         }
         self.debts.answered(unit, &asked.frame, self.line.now());
+        self.debts.is_clear(unit);
         Ok(())
     }
 }
