@@ -21,6 +21,9 @@ const GAP: Duration = Duration::from_millis(100);
 /// older ones are let go, so that endless noise costs no memory.
 const MOST_RECEIVED: usize = 512;
 
+/// Up to so many bytes of noise are kept with what is behind them, which tells when that came.
+const MOST_NOISE: usize = 64;
+
 /// Fewer stray bytes than the shortest frame has are noise on an idle line, not a damaged answer.
 const SHORTEST_FRAME: usize = 4;
 
@@ -177,6 +180,14 @@ impl Client {
             if let Some(reply) = self.judge(asked, heard) {
                 return Ok(reply);
             }
+            // Noise is not looked at again with every byte that comes.
+            if heard.received.len() > MOST_NOISE {
+                let useless = asked
+                    .expectation(self.echo, self.echoes)
+                    .useless(&heard.received);
+                heard.received.drain(..useless);
+                heard.forgotten += useless;
+            }
             heard.forgotten += forget_oldest(&mut heard.received);
             self.learn_echo(asked, &heard.evidence, false);
             if left.is_zero() {
@@ -251,9 +262,10 @@ impl Client {
         if heard.evidence.damaged == Some(Certainty::Certain) {
             self.debts.answered_badly(asked.unit, &asked.frame);
         }
+        let received = heard.received.len() + heard.forgotten;
         failure(
             &heard.evidence,
-            heard.received.len(),
+            received.min(MOST_RECEIVED),
             asked.patience.timeout,
         )
     }

@@ -150,6 +150,25 @@ impl<'a> Expectation<'a> {
         (Verdict::Waiting(evidence), received.len())
     }
 
+    /// How many of the first bytes are of no use any more: whatever comes behind them, no echo, no
+    /// answer and no frame of another unit begins there.
+    pub(super) fn useless(&self, received: &[u8]) -> usize {
+        let own = self.frame.as_bytes();
+        let is_useless = |at: &usize| {
+            let rest = received.get(*at..).unwrap_or_default();
+            // So many bytes tell the length of any frame.
+            let is_told = rest.len() >= own.len();
+            let is_frame = || match length::of_frame(rest, Direction::Response) {
+                Some(length) => {
+                    length > rest.len() || rtu::checked_window(rest, 0, length).is_some()
+                }
+                None => false,
+            };
+            is_told && !self.begins(rest) && !rest.starts_with(own) && !is_frame()
+        };
+        (0..received.len()).take_while(is_useless).count()
+    }
+
     /// How sure it is that a damaged answer was one.
     fn certainty(&self, damaged: &[u8], evidence: &Evidence) -> Certainty {
         // Unit, function and byte count are too many bytes for noise; two of them are not.

@@ -16,7 +16,7 @@ use super::script::{Chunk, dripped, reply, true_reply, unit};
 pub(crate) enum Manner {
     /// Answers may be late, missing, cut, damaged, or something else.
     Late,
-    /// Answers are in time and may come twice.
+    /// Answers are in time and may come twice; nothing is asked twice.
     Copies,
     /// Answers may be late, missing, or in pieces, and may come twice; nothing is asked twice.
     LateCopies,

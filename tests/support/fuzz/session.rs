@@ -58,7 +58,12 @@ pub(crate) fn session(data: &[u8]) {
             ReadFunction::InputRegisters,
         ]);
         // The requests for some registers start like their answers.
-        let start = u16::from(address % 16) + cursor.pick(&[0, 0x0240, 0x02A0, 0x0440]);
+        let mut start = u16::from(address % 16) + cursor.pick(&[0, 0x0240, 0x02A0, 0x0440]);
+        if session.model().makes_copies() {
+            // Nothing is asked twice: the copy of one answer would be taken, rightly, for the next,
+            // and leave two that look like the answer to something else.
+            start = 0x0240 + 8 * u16::try_from(left).expect("a small number");
+        }
         // What the line does with this request is in the bytes behind it.
         session.model().cursor = cursor.clone();
         if session.reads(number, function, start, count.into()) == Outcome::Chance {
