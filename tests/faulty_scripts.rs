@@ -248,13 +248,17 @@ fn a_time_that_is_none_is_refused() {
         "a time with its unit to 24h, such as 40ms",
     );
     allowed(
+        &["late,timeout=0s", "any,timeout=25h"],
+        "a time with its unit above 0 and to 24h, such as 20ms",
+    );
+    allowed(
         &[
             "drip=0ms",
             "garbage,every=0s",
-            "late,timeout=0s",
-            "any,timeout=25h",
+            "endless,every=99us",
+            "stranger-only,every=25h",
         ],
-        "a time with its unit above 0 and to 24h, such as 20ms",
+        "a time with its unit from 100us to 24h, such as 20ms",
     );
 }
 

@@ -276,6 +276,16 @@ fn what_has_no_end_does_not_keep_a_server_that_has_heard_all() {
 }
 
 #[test]
+fn a_stream_that_is_faster_than_it_is_sent_does_not_keep_a_turn() {
+    let mut scene = Scene::rtu().faults(&["garbage,every=100us"]);
+    scene.look = Duration::from_millis(1);
+    let played = scene.at(0, 0, echo(17, 1)).leaves(1000, 0).until(2000);
+    let said = |seen: &Seen| matches!(seen, Seen::Said(at, ..) if *at >= 1000);
+    assert_eq!(played.state, State::Serving);
+    assert!(played.seen.len() > 10 && !played.seen.iter().any(said));
+}
+
+#[test]
 fn modbus_tcp_echoes_transaction_and_unit() {
     let request = framed(0x1501, &echo(17, 1));
     let played = Scene::tcp().at(0, 1, &request).until(100);

@@ -299,9 +299,11 @@ impl<O: Outside> Server<O> {
         self.deliver()
     }
 
-    /// Sends what the line has said by now.
+    /// Sends what the line has said by now. What comes while that is sent is left to the next turn:
+    /// a stream that is faster than it is sent would keep the server here for ever.
     fn deliver(&mut self) -> Result<State, ServeError> {
-        if self.answer_at.is_some_and(|at| at <= self.clock.now()) {
+        let now = self.clock.now();
+        if self.answer_at.is_some_and(|at| at <= now) {
             self.answer_at = None;
         }
         let mut chunk = [0; 512];
@@ -310,6 +312,9 @@ impl<O: Outside> Server<O> {
                 Ok(0) => return Ok(State::Serving),
                 Ok(count) => self.say(chunk.get(..count).unwrap_or_default())?,
                 Err(_) => return self.hang_up(),
+            }
+            if self.line.next_due().is_some_and(|due| due > now) {
+                return Ok(State::Serving);
             }
         }
     }
