@@ -94,7 +94,8 @@ function=3, seed=7"
     /// A file of such rules, one a line; they come after those of --fault
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub fault_script: Option<PathBuf>,
-    /// End after this many requests were answered, with exit code 0
+    /// End after this many requests to the meters here, once what answers them is out, with exit
+    /// code 0
     #[arg(long, value_name = "NUMBER", value_parser = value_parser!(u64).range(1..))]
     pub count: Option<u64>,
     /// Speed in bits a second, of a serial port [default: the first meter's factory setting]

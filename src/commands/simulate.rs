@@ -23,8 +23,8 @@ const PATIENCE: Duration = Duration::from_millis(100);
 /// How long clients may take to read what they were sent last.
 const FAREWELL: Duration = Duration::from_secs(1);
 
-/// Serves until a signal comes, the line is lost, or as many requests are answered as were asked
-/// for.
+/// Serves until a signal comes, the line is lost, or as many requests were heard as were asked for
+/// and what answers them is out.
 pub(super) fn run(arguments: &Simulate, report: &Report) -> Result<ExitCode, CommandError> {
     let place = Place::of(arguments.port.as_deref())?;
     let wanted = meters::wanted(arguments)?;
