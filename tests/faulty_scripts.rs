@@ -263,6 +263,14 @@ fn a_time_that_is_none_is_refused() {
 }
 
 #[test]
+fn a_script_that_follows_another_is_tried_after_it() {
+    let first = FaultScript::parse(["crc,on=1"]).unwrap().with_seed(7);
+    let other = FaultScript::from_text("# more\nsilence\nany").unwrap();
+    let both = FaultScript::parse(["crc,on=1", "silence", "any"]).unwrap();
+    assert_eq!(first.followed_by(other.with_seed(8)), both.with_seed(7));
+}
+
+#[test]
 fn a_number_out_of_its_range_is_refused() {
     allowed(
         &["cut=0", "echo=257", "split=+4", "cut=0x"],
