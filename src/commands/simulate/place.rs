@@ -88,7 +88,7 @@ impl Place {
         match useless.iter().find(|(_, is_given)| *is_given) {
             Some((option, _)) if !matches!(self, Self::Serial(_)) => Err(CommandError::NoEffect {
                 option,
-                format: "a serial port",
+                what: "a serial port",
             }),
             _ => Ok(settings(baud, parity, stop_bits, factory)),
         }
