@@ -221,7 +221,8 @@ fn hint(error: &CommandError) -> Option<String> {
         }
         CommandError::UnitTwice { .. } => "units are given with the meter: --meter pqm=17,18",
         CommandError::Pty(PtyError::Exists { .. }) => {
-            "a pty needs a name that is free; one that was killed leaves its own behind"
+            "a pty needs a name that is free; a simulation that was killed leaves its own behind: \
+             remove it when none runs there any more"
         }
         CommandError::FaultNotShown { .. } => "rtu+tcp:// and ptys show all faults",
         CommandError::Open(error) => return open_hint(error),
