@@ -163,7 +163,7 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l seed -d
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l answer-time -d 'How long the meters take before they answer' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l fault -d 'What goes wrong, such as `late=1.1,rate=0.1`; may be repeated: the first rule that applies to a request decides' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l fault-script -d 'A file of such rules, one a line; they come after those of --fault' -r -F
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l count -d 'End after this many requests were answered, with exit code 0' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -l count -d 'End after this many requests to the meters here, once what answers them is out, with exit code 0' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s b -l baud -d 'Speed in bits a second, of a serial port [default: the first meter\'s factory setting]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand simulate" -s P -l parity -d 'Parity, of a serial port [default: the first meter\'s factory setting]' -r -f -a "none\t'No parity bit'
 even\t'Even parity, the standard\'s default'

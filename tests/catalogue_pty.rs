@@ -252,8 +252,9 @@ fn a_refusal_is_told_with_its_code_and_a_busy_meter_is_asked_again() {
         case(&["exception=1,on=1"], AMPLE, |seen| {
             seen.is_there == [false, true] && seen.status == "exception:1" && seen.requests == 2
         }),
-        case(&["exception=4,on=1-2"], AMPLE, |seen| {
-            seen.is_there == [false, false] && seen.code == Some(5) && seen.requests == 2
+        // What comes a second time is asked for once more.
+        case(&["exception=4,on=1-3"], AMPLE, |seen| {
+            seen.is_there == [false, false] && seen.code == Some(5) && seen.requests == 3
         }),
         case(&["exception=6,on=1-2"], AMPLE, |seen| {
             seen.is_there == [true, true] && seen.requests == 4

@@ -354,13 +354,53 @@ fn a_damaged_answer_to_a_loop_back_is_asked_for_again() {
 }
 
 #[test]
-fn no_loop_back_is_sent_while_its_answer_may_be_its_echo() {
+fn silence_without_a_byte_shows_that_the_line_does_not_echo() {
     let mut bench = Bench::new();
     bench.be_silent();
     assert!(bench.reads(1, LOOPBACK_ONLY).is_err());
     bench.answer_after(ms(10));
     bench.reads(2, LOOPBACK_ONLY).expect("an answer");
+    assert_eq!(bench.asked(), ["03 0x0001", "08 0x0000", "03 0x0002"]);
+}
+
+#[test]
+fn no_loop_back_is_sent_while_its_answer_may_be_its_echo() {
+    let mut bench = Bench::new();
+    // Damage that could be a damaged echo.
+    bench
+        .line
+        .meter(|_| vec![(ms(10), vec![0x11, 0x03, 0x02, 0, 0, 0, 0, 0, 0])]);
+    assert!(bench.reads(1, LOOPBACK_ONLY).is_err());
+    bench.answer_after(ms(10));
+    bench.reads(2, LOOPBACK_ONLY).expect("an answer");
     assert_eq!(bench.asked(), ["03 0x0001", "03 0x0002"]);
+}
+
+#[test]
+fn a_loop_back_that_can_be_taken_for_one_before_is_sent_again() {
+    let ways = Ways {
+        loopback: Some(QueryData::Zero),
+        ..LOOPBACK_ONLY
+    };
+    let mut bench = Bench::known();
+    bench.be_silent();
+    assert!(bench.reads(1, ways).is_err());
+    assert!(bench.reads(2, ways).is_err());
+    assert!(bench.reads(1, ways).is_err());
+    // Nothing of all that comes any more, but nobody knows.
+    bench.answer_after(ms(10));
+    bench.reads(2, ways).expect("an answer");
+    assert_eq!(
+        bench.asked()[1..],
+        [
+            "03 0x0001",
+            "08 0x0000",
+            "03 0x0001",
+            "08 0x0000",
+            "08 0x0000",
+            "03 0x0002"
+        ]
+    );
 }
 
 /// Two answers to a request: one after `first`, a copy of it so much later.

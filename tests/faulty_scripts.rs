@@ -248,14 +248,26 @@ fn a_time_that_is_none_is_refused() {
         "a time with its unit to 24h, such as 40ms",
     );
     allowed(
+        &["late,timeout=0s", "any,timeout=25h"],
+        "a time with its unit above 0 and to 24h, such as 20ms",
+    );
+    allowed(
         &[
             "drip=0ms",
             "garbage,every=0s",
-            "late,timeout=0s",
-            "any,timeout=25h",
+            "endless,every=99us",
+            "stranger-only,every=25h",
         ],
-        "a time with its unit above 0 and to 24h, such as 20ms",
+        "a time with its unit from 100us to 24h, such as 20ms",
     );
+}
+
+#[test]
+fn a_script_that_follows_another_is_tried_after_it() {
+    let first = FaultScript::parse(["crc,on=1"]).unwrap().with_seed(7);
+    let other = FaultScript::from_text("# more\nsilence\nany").unwrap();
+    let both = FaultScript::parse(["crc,on=1", "silence", "any"]).unwrap();
+    assert_eq!(first.followed_by(other.with_seed(8)), both.with_seed(7));
 }
 
 #[test]

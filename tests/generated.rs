@@ -120,3 +120,29 @@ fn page(command: &Command, name: &'static str) -> String {
 fn the_definitions_of_the_command_line_hold_together() {
     Arguments::command().debug_assert();
 }
+
+/// All commands, those below them as well.
+fn all(command: &Command) -> Vec<&Command> {
+    let below = command.get_subcommands().flat_map(all);
+    std::iter::once(command).chain(below).collect()
+}
+
+#[test]
+fn help_is_wrapped_at_the_width_of_the_terminal_and_nowhere_else() {
+    /// In 80 columns, behind the margin that help has.
+    const ROOM: usize = 70;
+    let command = Arguments::command();
+    for command in all(&command) {
+        let of_arguments = command.get_arguments().map(clap::Arg::get_long_help);
+        let texts = of_arguments.chain([command.get_long_about()]);
+        for text in texts.flatten().map(ToString::to_string) {
+            for paragraph in text.split("\n\n") {
+                let is_table = |line: &&str| line.starts_with("  ");
+                let (tables, words): (Vec<_>, Vec<_>) = paragraph.lines().partition(is_table);
+                assert!(words.len() <= 1, "{paragraph}");
+                let narrow = tables.iter().all(|line| line.chars().count() <= ROOM);
+                assert!(narrow, "{paragraph}");
+            }
+        }
+    }
+}

@@ -170,6 +170,19 @@ fn a_client_waits_while_another_is_to_be_answered() {
 }
 
 #[test]
+fn requests_that_find_no_room_to_wait_are_counted() {
+    let scene = Scene::rtu().faults(&["delay=300ms,on=1"]);
+    let played = scene
+        .at(0, 1, echo(17, 1))
+        .at(10, 2, echo(17, 2).repeat(67))
+        .until(500);
+    assert_eq!(
+        played.server.tally().to_string(),
+        "65 requests (function 08: 65), 65 answers, 3 lost because too many waited"
+    );
+}
+
+#[test]
 fn a_client_does_not_wait_for_ever() {
     let scene = Scene::rtu().faults(&["endless,on=1,every=100ms"]);
     let played = scene
@@ -273,6 +286,31 @@ fn what_has_no_end_does_not_keep_a_server_that_has_heard_all() {
     scene.service.count = Some(1);
     let played = scene.at(0, 0, echo(17, 1)).until(60_000);
     assert_eq!((played.state, played.end), (State::Done, 10_000));
+}
+
+#[test]
+fn an_answer_goes_out_however_late_it_is_for_a_server_that_has_heard_all() {
+    let mut scene = Scene::rtu().faults(&["late=3,timeout=10s"]);
+    scene.service.count = Some(1);
+    let played = scene.at(0, 0, echo(17, 1)).until(60_000);
+    assert_eq!(played.seen, [said(30_000, 0, echo(17, 1))]);
+    assert_eq!((played.state, played.end), (State::Done, 30_000));
+
+    let mut scene = Scene::rtu().faults(&["garbage,every=1s,lasts=20s"]);
+    scene.service.count = Some(1);
+    let played = scene.at(0, 0, echo(17, 1)).until(60_000);
+    assert_eq!(played.state, State::Done);
+    assert_eq!(played.end, 19_000);
+}
+
+#[test]
+fn a_stream_that_is_faster_than_it_is_sent_does_not_keep_a_turn() {
+    let mut scene = Scene::rtu().faults(&["garbage,every=100us"]);
+    scene.look = Duration::from_millis(1);
+    let played = scene.at(0, 0, echo(17, 1)).leaves(1000, 0).until(2000);
+    let said = |seen: &Seen| matches!(seen, Seen::Said(at, ..) if *at >= 1000);
+    assert_eq!(played.state, State::Serving);
+    assert!(played.seen.len() > 10 && !played.seen.iter().any(said));
 }
 
 #[test]

@@ -28,6 +28,7 @@ use meterpoll::transport::pty::Pty;
 use rustix::fs::{Mode, OFlags};
 #[cfg(target_os = "linux")]
 use rustix::termios::ioctl_tiocexcl;
+use rustix::termios::{LocalModes, OptionalActions, tcgetattr, tcsetattr};
 use serialport::{SerialPort, TTYPort};
 
 use support::program::Program;
@@ -301,6 +302,31 @@ fn a_name_that_leads_elsewhere_by_now_is_left_alone() {
     fs::remove_file(path).unwrap();
 }
 
+const HINT: &str = "hint: a pty needs a name that is free; a simulation that was killed leaves its \
+                    own behind: remove it when none runs there any more\n";
+
+#[test]
+fn a_link_that_was_left_does_not_make_somebodys_terminal_a_line() {
+    let path = free_path("stale-meter");
+    let (_ours, theirs, terminal) = pair().unwrap();
+    symlink(&terminal, &path).unwrap();
+    let mut settings = tcgetattr(&theirs).unwrap();
+    settings.local_modes |= LocalModes::ECHO | LocalModes::ICANON;
+    tcsetattr(&theirs, OptionalActions::Now, &settings).unwrap();
+    let name = path.display();
+    Program::new(&format!("simulate --port {name}"))
+        .code(3)
+        .stderr(format!(
+            "error: {name} exists already, as a link to a pty\n{HINT}"
+        ))
+        .run();
+    let modes = tcgetattr(&theirs).unwrap().local_modes;
+    assert_eq!(modes, settings.local_modes);
+    assert!(serialport::new(&terminal, 9600).open_native().is_ok());
+    assert_eq!(fs::read_link(&path).unwrap(), Path::new(&terminal));
+    fs::remove_file(path).unwrap();
+}
+
 #[test]
 fn what_others_left_is_never_written_over() {
     let path = free_path("left-meter");
@@ -310,7 +336,7 @@ fn what_others_left_is_never_written_over() {
         .code(3)
         .stderr(format!(
             "error: {name} exists already, as a link that leads nowhere\n\
-             hint: a pty needs a name that is free; one that was killed leaves its own behind\n"
+             {HINT}"
         ))
         .run();
     fs::remove_file(&path).unwrap();

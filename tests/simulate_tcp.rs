@@ -8,9 +8,11 @@ mod support {
     pub(crate) mod simulation;
 }
 
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::time::Duration;
+
+use meterpoll::transport::listen::Listener;
 
 use support::frames_of::{echo, framed, sealed};
 use support::simulation::{Ended, Simulation};
@@ -143,6 +145,21 @@ fn requests_of_all_clients_count_for_the_rules() {
     for _ in 0..3 {
         ask(&mut connect(&simulation), &echo(17, 1), &busy);
         ask(&mut connect(&simulation), &echo(17, 1), &echo(17, 1));
+    }
+}
+
+#[test]
+fn a_listener_that_ends_lets_go_of_clients_that_nobody_has_heard_of() {
+    let listener = Listener::open("127.0.0.1:0").unwrap();
+    let clients = [(); 20].map(|()| TcpStream::connect(listener.address()).unwrap());
+    drop(listener);
+    for client in clients {
+        let limit = Some(Duration::from_secs(10));
+        client.set_read_timeout(limit).unwrap();
+        match (&client).read(&mut [0]) {
+            Ok(count) => assert_eq!(count, 0),
+            Err(error) => assert_eq!(error.kind(), ErrorKind::ConnectionReset),
+        }
     }
 }
 

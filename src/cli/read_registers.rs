@@ -31,8 +31,9 @@ Always: registers by protocol address, from 0:
   0x006B              one register
   107                 the same in decimal
   0x6B+3              three registers
-  0x11F:u32           a type: u16 i16 u32 i32 u64 i64 f32 f64 hex bits mod10000 ascii/N
-                      (N characters), and letter time date as the PQM stores them
+  0x11F:u32           a type: u16 i16 u32 i32 u64 i64 f32 f64 hex
+                      bits mod10000 ascii/N (N characters), and
+                      letter time date as the PQM stores them
   0x11F:u32/CDAB      an order of bytes: ABCD CDAB BADC DCBA
   0x11F:u32*0.1=kWh   a factor and a unit"
     )]

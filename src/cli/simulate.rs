@@ -30,13 +30,15 @@ pub struct Simulate {
         long_help = "\
 Where clients come from [default: a new pty]
 
-  /tmp/meter                a new pty under this name, which must be free and not under /dev; the
-                            name goes with the program
+  /tmp/meter                a new pty under this name, which must be
+                            free and not under /dev; the name goes
+                            with the program
   /dev/ttyUSB0              a serial port
-  rtu+tcp://127.0.0.1:5020  RTU frames over TCP; port 0 is any that is free
+  rtu+tcp://127.0.0.1:5020  RTU frames over TCP; port 0 is any that
+                            is free
   tcp://127.0.0.1:502       Modbus TCP; 502 may be left out
 
-Its path or address is the first line on stdout. The variable METERPOLL_PORT has no say here: a
+Its path or address is the first line on stdout. The variable METERPOLL_PORT has no say here: a \
 simulated meter must not come onto a line of real ones by accident."
     )]
     pub port: Option<String>,
@@ -46,10 +48,10 @@ simulated meter must not come onto a line of real ones by accident."
         long,
         value_name = "METER[=UNITS]",
         long_help = "\
-A meter and its units: a name that `meters list` shows or a profile file, and =17, =1,2,5-9. May be
+A meter and its units: a name that `meters list` shows or a profile file, and =17, =1,2,5-9. May be \
 repeated [default: em24=1, pm290=2, em21=3, pqm=17]
 
-Without units it has the one named above, and unit 1 when it is another meter. Each unit has a load
+Without units it has the one named above, and unit 1 when it is another meter. Each unit has a load \
 of its own. A meter that is not named above holds 0 in all registers that --values does not give."
     )]
     pub meter: Vec<MeterUnits>,
@@ -61,10 +63,10 @@ of its own. A meter that is not named above holds 0 in all registers that --valu
         long_help = "\
 CSV with values that stay as they are, while all others move with the load.
 
-Its header has the columns point and value; rows of a column unit_id are for that unit only, and
-other columns are passed over, so that what `read-registers -f csv --layout long` wrote is played
-back. A value is written as it reads: 415, 60.01, on, 23:59:59.000. In place of a point there can
-be a register, 0x0240, and the number in it. Empty values are left to the load, and of several rows
+Its header has the columns point and value; rows of a column unit_id are for that unit only, and \
+other columns are passed over, so that what `read-registers -f csv --layout long` wrote is played \
+back. A value is written as it reads: 415, 60.01, on, 23:59:59.000. In place of a point there can \
+be a register, 0x0240, and the number in it. Empty values are left to the load, and of several rows \
 for one point the last one counts."
     )]
     pub values: Option<PathBuf>,
@@ -80,21 +82,22 @@ for one point the last one counts."
         long,
         value_name = "RULE",
         long_help = "\
-What goes wrong: KIND[=VALUE][,KEY=VALUE]... May be repeated: the first rule that applies to a
+What goes wrong: KIND[=VALUE][,KEY=VALUE]... May be repeated: the first rule that applies to a \
 request decides.
 
-Kinds: late delay silence cut split drip endless before after echo echo-only twice crc crc-swapped
-flip burst wrong-unit stranger stranger-only wrong-function wrong-count oversize exception
+Kinds: late delay silence cut split drip endless before after echo echo-only twice crc crc-swapped \
+flip burst wrong-unit stranger stranger-only wrong-function wrong-count oversize exception \
 exception-for garbage hang-up any
 
-Keys of all: rate=0.1 (how probable), on=3, on=3-5, on=1/4 (which requests), for=17 (unit),
+Keys of all: rate=0.1 (how probable), on=3, on=3-5, on=1/4 (which requests), for=17 (unit), \
 function=3, seed=7"
     )]
     pub fault: Vec<String>,
     /// A file of such rules, one a line; they come after those of --fault
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub fault_script: Option<PathBuf>,
-    /// End after this many requests were answered, with exit code 0
+    /// End after this many requests to the meters here, once what answers them is out, with exit
+    /// code 0
     #[arg(long, value_name = "NUMBER", value_parser = value_parser!(u64).range(1..))]
     pub count: Option<u64>,
     /// Speed in bits a second, of a serial port [default: the first meter's factory setting]

@@ -62,6 +62,8 @@ pub(super) struct Answer {
 /// What has been heard since the request went out.
 #[derive(Default)]
 struct Heard {
+    /// How many bytes came in all.
+    bytes: usize,
     received: Vec<u8>,
     arrivals: Arrivals,
     evidence: Evidence,
@@ -172,19 +174,11 @@ impl Client {
             if came == 0 {
                 continue;
             }
+            heard.bytes += came;
             let is_whole = heard.forgotten == 0 && heard.received.len() <= MOST_RECEIVED;
             heard.arrivals.note(came, self.line.now(), is_whole);
-            let expectation = asked.expectation(self.echo, self.echoes);
-            match expectation.judge(&heard.received) {
-                Verdict::Answer(reply, before) => {
-                    self.learn_echo(asked, &before, true);
-                    heard.evidence = before;
-                    return Ok(reply);
-                }
-                Verdict::Waiting(found) => heard.evidence = found,
-            }
-            if heard.evidence.mismatch.is_some() {
-                self.drop_late(asked, heard);
+            if let Some(reply) = self.judge(asked, heard) {
+                return Ok(reply);
             }
             // Noise is not looked at again with every byte that comes.
             if heard.received.len() > MOST_NOISE {
@@ -209,24 +203,32 @@ impl Client {
         }
     }
 
-    /// A frame of the unit that does not answer this may answer what was asked before.
-    fn drop_late(&mut self, asked: &Asked, heard: &mut Heard) {
-        let others = Some((asked.unit, &asked.frame));
-        while let Some(late) = self
-            .debts
-            .late_in(&heard.received, others, self.echo, self.echoes)
-        {
+    /// The answer, if it is there; answers to what was asked before are dropped.
+    fn judge(&mut self, asked: &Asked, heard: &mut Heard) -> Option<Reply> {
+        loop {
+            let expectation = asked.expectation(self.echo, self.echoes);
+            match expectation.judge(&heard.received) {
+                Verdict::Answer(reply, before) => {
+                    self.learn_echo(asked, &before, true);
+                    heard.evidence = before;
+                    return Some(reply);
+                }
+                Verdict::Waiting(found) => heard.evidence = found,
+            }
+            // A frame of the unit that does not answer this may answer what was asked before.
+            heard.evidence.mismatch.as_ref()?;
+            let others = Some((asked.unit, &asked.frame));
+            let late = self
+                .debts
+                .late_in(&heard.received, others, self.echo, self.echoes)?;
             info!(
                 "unit {}: an answer to an earlier request was dropped",
                 late.unit
             );
-            self.drop_answer(&late);
+            self.ledger.of(late.unit).late += 1;
+            self.take(late.unit, &late.frame, &late.reply);
             heard.received.drain(..late.end);
             heard.arrivals = Arrivals::useless();
-        }
-        let expectation = asked.expectation(self.echo, self.echoes);
-        if let Verdict::Waiting(found) = expectation.judge(&heard.received) {
-            heard.evidence = found;
         }
     }
 
@@ -253,6 +255,10 @@ impl Client {
 
     /// The time is up.
     fn give_up(&mut self, asked: &Asked, heard: &Heard) -> Failure {
+        // A line that echoes does so whether or not anybody answers.
+        if heard.bytes < asked.frame.as_bytes().len() {
+            self.echoes.get_or_insert(false);
+        }
         if heard.evidence.damaged == Some(Certainty::Certain) {
             self.debts.answered_badly(asked.unit, &asked.frame);
         }
@@ -277,7 +283,7 @@ impl Client {
             && *seen == Evidence::default()
             && !belief::is_mirrored(&asked.request)
         {
-            self.echoes.get_or_insert(false);
+            self.echoes = Some(false);
         }
     }
 }

@@ -47,7 +47,7 @@ impl Counters {
             Failure::Damaged { .. } => self.damaged += 1,
             Failure::Mismatch { .. } => self.mismatched += 1,
             Failure::NeverQuiet { discarded } => self.stray += *discarded as u64,
-            Failure::Exception(_) | Failure::Port(_) => {}
+            Failure::Exception(_) | Failure::Ambiguous | Failure::Port(_) => {}
         }
     }
 }

@@ -27,6 +27,8 @@ const LEAST_MEMORY: Duration = Duration::from_secs(10);
 struct Debt {
     request: Request,
     frame: Frame,
+    /// When the request had left the line.
+    sent: Duration,
     /// Until when nobody else is asked.
     line_until: Duration,
     /// Until when the unit is not asked anything else.
@@ -84,14 +86,14 @@ impl Account {
     }
 
     /// The answer to the oldest of equal requests is there: which of them it answers, nothing in it
-    /// tells, and the others can still be answered.
-    fn pay(&mut self, frame: &Frame) {
-        for debts in [&mut self.overdue, &mut self.awaited] {
-            if let Some(index) = debts.iter().position(|debt| debt.frame == *frame) {
-                debts.remove(index);
-                return;
-            }
-        }
+    /// tells, and the others can still be answered. Returns the debt that is paid.
+    fn pay(&mut self, frame: &Frame) -> Option<Debt> {
+        [&mut self.overdue, &mut self.awaited]
+            .into_iter()
+            .find_map(|debts| {
+                let index = debts.iter().position(|debt| debt.frame == *frame)?;
+                Some(debts.remove(index))
+            })
     }
 
     fn is_settled(&self) -> bool {
@@ -114,6 +116,7 @@ impl Debts {
         self.0.entry(unit).or_default().awaited.push(Debt {
             request: request.clone(),
             frame: frame.clone(),
+            sent,
             line_until: begin + patience.timeout,
             unit_until,
             forget_at: unit_until + patience.at_the_most().saturating_mul(10).max(LEAST_MEMORY),
@@ -153,10 +156,13 @@ impl Debts {
         }
     }
 
-    /// Nothing that is overdue of this unit will come any more.
-    pub(super) fn is_clear(&mut self, unit: Unit) {
-        if let Some(account) = self.0.get_mut(&unit) {
-            account.overdue.clear();
+    /// The same, of an answer that proves that no answer to what the unit was asked before comes any
+    /// more.
+    pub(super) fn answered_at_last(&mut self, unit: Unit, frame: &Frame) {
+        if let Some(account) = self.0.get_mut(&unit)
+            && let Some(paid) = account.pay(frame)
+        {
+            account.overdue.retain(|debt| debt.sent >= paid.sent);
         }
     }
 

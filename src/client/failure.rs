@@ -46,6 +46,10 @@ pub enum Failure {
     /// The meter refused.
     #[error("the meter refused: {0}")]
     Exception(ExceptionCode),
+    /// Nothing was asked: a late answer to something else could not have been told from the right
+    /// one.
+    #[error("not asked, for a late answer to an earlier request could be taken for its answer")]
+    Ambiguous,
     /// The line was never silent, so nothing could be asked.
     #[error("the line is never silent: {discarded} bytes came before a request could be sent")]
     NeverQuiet {
@@ -65,7 +69,7 @@ impl Failure {
             Self::Exception(code) => {
                 *code == ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND
             }
-            Self::Port(_) | Self::NeverQuiet { .. } => false,
+            Self::Port(_) | Self::Ambiguous | Self::NeverQuiet { .. } => false,
             _ => true,
         }
     }

@@ -11,7 +11,8 @@ use log::info;
 
 use super::failure::Failure;
 use super::patience::Patience;
-use crate::transport::{Line, TransportError};
+use super::transaction::Client;
+use crate::transport::TransportError;
 
 /// The pause after the first try; it doubles up to [`LONGEST_PAUSE`].
 const FIRST_PAUSE: Duration = Duration::from_millis(50);
@@ -19,36 +20,41 @@ const FIRST_PAUSE: Duration = Duration::from_millis(50);
 /// The longest pause between two tries.
 const LONGEST_PAUSE: Duration = Duration::from_millis(200);
 
-/// Opens the port of a line again if it was lost: at once, and again and again for as long as the
-/// attempts at a request would take.
-///
-/// # Errors
-/// [`Failure::Port`] when it does not come back, with the reason.
-pub(super) fn regain(line: &mut Line, patience: Patience) -> Result<(), Failure> {
-    let Some(loss) = line.loss().cloned() else {
-        return Ok(());
-    };
-    let attempts = patience.retries.saturating_add(1);
-    let within = patience.timeout.saturating_mul(attempts);
-    let give_up = line.now().saturating_add(within);
-    let mut pause = FIRST_PAUSE;
-    info!("port {}: trying to open it again", loss.port);
-    loop {
-        let Err(error) = line.reopen() else {
-            let away = line.now().saturating_sub(loss.at);
-            info!("port {} is back after {} ms", loss.port, away.as_millis());
+impl Client {
+    /// Opens the port of a line again if it was lost: at once, and again and again for as long as the
+    /// attempts at a request would take.
+    ///
+    /// # Errors
+    /// [`Failure::Port`] when it does not come back, with the reason.
+    pub(super) fn regain(&mut self, patience: Patience) -> Result<(), Failure> {
+        let line = &mut self.line;
+        let Some(loss) = line.loss().cloned() else {
             return Ok(());
         };
-        let left = give_up.saturating_sub(line.now());
-        if left.is_zero() {
-            let source = error.with_holders();
-            return Err(Failure::Port(TransportError::NotBack {
-                port: loss.port,
-                within,
-                source,
-            }));
+        let attempts = patience.retries.saturating_add(1);
+        let within = patience.timeout.saturating_mul(attempts);
+        let give_up = line.now().saturating_add(within);
+        let mut pause = FIRST_PAUSE;
+        info!("port {}: trying to open it again", loss.port);
+        loop {
+            let Err(error) = line.reopen() else {
+                let away = line.now().saturating_sub(loss.at);
+                info!("port {} is back after {} ms", loss.port, away.as_millis());
+                // It can be another adapter.
+                self.echoes = None;
+                return Ok(());
+            };
+            let left = give_up.saturating_sub(line.now());
+            if left.is_zero() {
+                let source = error.with_holders();
+                return Err(Failure::Port(TransportError::NotBack {
+                    port: loss.port,
+                    within,
+                    source,
+                }));
+            }
+            line.sleep(pause.min(left));
+            pause = (pause * 2).min(LONGEST_PAUSE);
         }
-        line.sleep(pause.min(left));
-        pause = (pause * 2).min(LONGEST_PAUSE);
     }
 }

@@ -20,10 +20,11 @@
 //!   When it meets silence the request is not even sent: the unit would most likely not answer that
 //!   either. A meter that does not have the function after all is lost for no longer than late
 //!   answers are remembered.
-//! * *A second look*: registers that are, word for word, what the unit has just given for something
-//!   else may be a second copy of that answer, as a repeater or a gateway can make it. They are asked
-//!   for once more. Costs one transaction, and only where two blocks are equal. Where it was a copy,
-//!   the time by which it came later is kept free behind every answer from then on.
+//! * *A second look*: what is, byte for byte, what the unit has just answered to something else may be
+//!   a second copy of that, as a repeater or a gateway can make it: registers or a refusal. It is asked
+//!   for once more. Costs one transaction, and only where two answers are equal. Where copies come
+//!   again, the time by which they come later is kept free behind every answer for a minute. The
+//!   same question asked again at once uses the other function, where there is one.
 //!
 //! The first two always, then the functions, then the loop-back: the cheapest first. For a meter of
 //! which nothing is known only waiting is left, and an answer that is later than that and as long as
@@ -33,11 +34,10 @@ use std::time::Duration;
 
 use log::info;
 
-use super::attempt::{Answer, Asked};
+use super::attempt::Asked;
 use super::debts::Next;
 use super::failure::Failure;
-use super::patience::{Patience, QueryData, Ways};
-use super::regain::regain;
+use super::patience::{Patience, QueryData};
 use super::transaction::Client;
 use crate::codec::{ExceptionCode, Reply, Request, Response, Unit};
 
@@ -48,6 +48,9 @@ const BUSY_WAITS: [Duration; 3] = [
     Duration::from_millis(400),
 ];
 
+/// So many loop-backs are sent, one behind the other, to make sure.
+const MOST_BARRIERS: u32 = 4;
+
 /// The first word of a loop-back that serves as a barrier, where any word does: unlike noise.
 const FIRST_BARRIER: u16 = 0xA5C2;
 
@@ -56,7 +59,7 @@ const MOST_LOOKS: usize = 4;
 
 /// An answer that may be a second copy of another.
 struct Doubtful {
-    response: Response,
+    reply: Reply,
     /// How long ago the other was believed.
     age: Duration,
 }
@@ -99,7 +102,7 @@ impl Client {
         ends_with_silence: bool,
     ) -> Result<Response, Failure> {
         let wanted = Asked::new(unit, request.clone(), patience);
-        regain(&mut self.line, patience)?;
+        self.regain(patience)?;
         let mut asked = self.told_apart(&wanted)?;
         let give_up = self.line.now() + patience.in_all();
         let mut retries = 1..=patience.retries;
@@ -111,7 +114,7 @@ impl Client {
             let answer = self.attempt(&asked, pause);
             pause = patience.pause;
             let failure = match answer {
-                Ok(answer) => match self.believe(&asked, answer, &mut doubtful) {
+                Ok(answer) => match self.believe(&asked, answer.reply, &mut doubtful) {
                     None if doubtful.len() > MOST_LOOKS => {
                         self.hold_for_copies(&asked, &doubtful);
                         doubtful.clear();
@@ -137,7 +140,7 @@ impl Client {
                     continue;
                 }
                 // A meter may take one function only, whatever its profile says.
-                Failure::Exception(_) if asked != wanted => {
+                Failure::Exception(code) if asked != wanted && !code.is_of_gateway() => {
                     info!("unit {unit}: refused, asking with the usual function");
                     self.settle(Next::Request(unit, &wanted.frame))?;
                     self.make_sure(&wanted)?;
@@ -172,46 +175,31 @@ impl Client {
     fn believe(
         &mut self,
         asked: &Asked,
-        answer: Answer,
+        reply: Reply,
         doubtful: &mut Vec<Doubtful>,
     ) -> Option<Reply> {
+        if reply.exception().is_some_and(ExceptionCode::is_of_gateway) {
+            return Some(reply);
+        }
         let now = self.line.now();
         let Asked { unit, frame, .. } = asked;
-        let response = match &answer.reply {
-            Reply::Normal(response) => response,
-            // That was the gateway: the unit itself may still answer.
-            Reply::Exception {
-                code: ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND,
-                ..
-            } => return Some(answer.reply),
-            Reply::Exception { .. } => {
-                self.debts.answered(*unit, frame, now);
-                return Some(answer.reply);
-            }
-        };
         let since = now.saturating_sub(asked.patience.at_the_most());
-        if doubtful
-            .iter()
-            .any(|doubtful| doubtful.response == *response)
-        {
-            // Both are answers, and the registers really are the same.
+        if doubtful.iter().any(|doubtful| doubtful.reply == reply) {
+            // Both are answers, and they really are the same.
             self.debts.answered(*unit, frame, now);
-        } else if let Some(age) = self.recent.age((since, now), *unit, frame, response) {
-            info!("unit {unit}: the same registers as in an answer before, asking once more");
-            doubtful.push(Doubtful {
-                response: response.clone(),
-                age,
-            });
+        } else if let Some(before) = self.recent.before(since, *unit, frame, &reply) {
+            info!("unit {unit}: the same as it answered before, asking once more");
+            let age = now.saturating_sub(before);
+            doubtful.push(Doubtful { reply, age });
             return None;
         } else if !doubtful.is_empty() {
             self.hold_for_copies(asked, doubtful);
         }
-        if let Some(delay) = self.recent.delay(*unit) {
+        if let Some(delay) = self.recent.delay(*unit, now) {
             self.debts.hold(*unit, now + delay + delay / 2);
         }
-        self.recent.note(now, *unit, frame, response);
-        self.debts.answered(*unit, frame, now);
-        Some(answer.reply)
+        self.take(*unit, frame, &reply);
+        Some(reply)
     }
 
     /// Answers of the unit come twice: all that is under way by now looks like an answer, and every
@@ -224,9 +212,9 @@ impl Client {
             delay.as_millis()
         );
         self.ledger.of(unit).copies += copies.len() as u64;
-        self.recent.learn_delay(unit, delay);
-        let until = self.line.now() + asked.patience.at_the_most();
-        self.debts.hold(unit, until);
+        let now = self.line.now();
+        self.recent.learn_delay(now, unit, delay);
+        self.debts.hold(unit, now + asked.patience.at_the_most());
     }
 
     /// The form of a request of which no late answer to something else can be taken for its
@@ -246,8 +234,12 @@ impl Client {
         if same.is_some() {
             return Ok(first.clone());
         }
-        if let Some(form) = forms().find(|form| !self.is_doubtful(form)) {
-            return Ok(form.clone());
+        let mut sure: Vec<&Asked> = forms().filter(|form| !self.is_doubtful(form)).collect();
+        // A second copy of the answer to the same question is told by the function as well.
+        let since = self.line.now().saturating_sub(patience.at_the_most());
+        sure.sort_by_key(|form| self.recent.is_repeated(since, unit, &form.frame));
+        if let Some(form) = sure.first() {
+            return Ok((*form).clone());
         }
         self.make_sure(wanted)?;
         Ok(wanted.clone())
@@ -257,44 +249,64 @@ impl Client {
         self.debts.doubt(asked.unit, &asked.request, &asked.frame)
     }
 
-    /// Makes as sure as can be that no late answer is taken for the one to this.
+    /// Makes as sure as can be that no late answer is taken for the one to this, by a loop-back where
+    /// the meter has it and its answer cannot be its echo.
+    ///
+    /// # Errors
+    /// [`Failure`] of the loop-back, or [`Failure::Ambiguous`] where it has proved nothing.
     fn make_sure(&mut self, wanted: &Asked) -> Result<(), Failure> {
-        if let Some(word) = self.barrier(wanted.patience.ways) {
-            self.pass_barrier(wanted, word)?;
+        if let Some(data) = wanted.patience.ways.loopback
+            && self.knows_echo()
+        {
+            // The answer can be that to a loop-back before, and proves no more than that one then.
+            let mut barriers = 0..MOST_BARRIERS;
+            while self.is_doubtful(wanted) {
+                if barriers.next().is_none() {
+                    return Err(Failure::Ambiguous);
+                }
+                self.loop_back_first(wanted, data)?;
+            }
+            return Ok(());
         }
         // What is left of the doubt nothing can remove.
         self.debts.forget(wanted.unit, wanted.request.function());
         Ok(())
     }
 
-    /// The word of a loop-back, where the meter has it and its answer cannot be its echo.
-    fn barrier(&mut self, ways: Ways) -> Option<u16> {
-        match ways.loopback? {
-            _ if !self.knows_echo() => None,
-            QueryData::Zero => Some(0),
-            // Another one each time, so that a late one proves nothing.
-            QueryData::Any => {
-                self.barriers = self.barriers.wrapping_add(1);
-                Some(FIRST_BARRIER ^ self.barriers)
-            }
-        }
-    }
-
-    /// Sends a loop-back: after its answer nothing asked before comes any more.
-    fn pass_barrier(&mut self, wanted: &Asked, word: u16) -> Result<(), Failure> {
+    fn loop_back_first(&mut self, wanted: &Asked, data: QueryData) -> Result<(), Failure> {
         let Asked { unit, patience, .. } = *wanted;
-        let asked = Asked::new(unit, Request::ReturnQueryData(word), patience);
         info!("unit {unit}: sending a loop-back, behind which no late answer comes");
         let mut retries = 0..patience.retries;
-        while let Err(failure) = self.attempt(&asked, patience.pause) {
+        loop {
+            let barrier = Request::ReturnQueryData(self.barrier(data));
+            let barrier = Asked::new(unit, barrier, patience);
+            let failure = match self.attempt(&barrier, patience.pause) {
+                Ok(answer) => {
+                    self.take(unit, &barrier.frame, &answer.reply);
+                    match answer.reply.exception() {
+                        Some(code) if code.is_of_gateway() => Failure::Exception(code),
+                        _ => return Ok(()),
+                    }
+                }
+                Err(failure) => failure,
+            };
             let can_help = failure.is_worth_a_retry() && !failure.is_silence();
             if !can_help || retries.next().is_none() {
                 return Err(failure);
             }
             self.ledger.of(unit).retries += 1;
         }
-        self.debts.answered(unit, &asked.frame, self.line.now());
-        self.debts.is_clear(unit);
-        Ok(())
+    }
+
+    /// The word of a loop-back: another one each time, where the meter takes any, so that a late one
+    /// is told from it.
+    const fn barrier(&mut self, data: QueryData) -> u16 {
+        match data {
+            QueryData::Zero => 0,
+            QueryData::Any => {
+                self.barriers = self.barriers.wrapping_add(1);
+                FIRST_BARRIER ^ self.barriers
+            }
+        }
     }
 }

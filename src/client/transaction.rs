@@ -9,12 +9,11 @@ use super::answer_times::AnswerTimes;
 use super::attempt::{Asked, forget_oldest};
 use super::belief::{self, Echo};
 use super::counters::{Counters, Ledger};
-use super::debts::{Debts, Late, Next};
+use super::debts::{Debts, Next};
 use super::failure::Failure;
 use super::patience::Patience;
 use super::recent::Recent;
-use super::regain::regain;
-use crate::codec::{Reply, Request, Unit};
+use crate::codec::{ExceptionCode, Frame, FunctionCode, Reply, Request, Unit};
 use crate::transport::Line;
 
 /// Allowance for adapters that hold bytes back: two of the 16 ms periods of a common USB chip.
@@ -87,10 +86,10 @@ impl Client {
         patience: Patience,
     ) -> Result<Duration, Failure> {
         let asked = Asked::new(unit, Request::ReturnQueryData(word), patience);
-        regain(&mut self.line, patience)?;
+        self.regain(patience)?;
         self.settle(Next::Unlike(unit))?;
         let answer = self.attempt(&asked, patience.pause)?;
-        self.debts.answered(unit, &asked.frame, self.line.now());
+        self.take(unit, &asked.frame, &answer.reply);
         match answer.reply {
             Reply::Normal(_) => Ok(answer.took),
             Reply::Exception { code, .. } => Err(Failure::Exception(code)),
@@ -134,7 +133,8 @@ impl Client {
             while let Some(late) = self.debts.late_in(&received, None, self.echo, self.echoes) {
                 info!("unit {}: a late answer was thrown away", late.unit);
                 received.drain(..late.end);
-                self.drop_answer(&late);
+                self.ledger.of(late.unit).late += 1;
+                self.take(late.unit, &late.frame, &late.reply);
             }
             forget_oldest(&mut received);
             let Some(until) = self.debts.wait_until(next, self.line.now()) else {
@@ -146,14 +146,21 @@ impl Client {
         Ok(())
     }
 
-    /// Takes a late answer as paid. It is remembered, for a second copy of it may follow.
-    pub(super) fn drop_answer(&mut self, late: &Late) {
-        let now = self.line.now();
-        self.ledger.of(late.unit).late += 1;
-        if let Reply::Normal(response) = &late.reply {
-            self.recent.note(now, late.unit, &late.frame, response);
+    /// Takes an answer as paid, and remembers it, for a second copy of it may follow. What a gateway
+    /// says pays nothing: the unit behind it can still answer. After an answer to a loop-back nothing
+    /// asked before comes any more: a meter answers one request after the other, and what carries
+    /// its bytes keeps their order.
+    pub(super) fn take(&mut self, unit: Unit, frame: &Frame, reply: &Reply) {
+        if reply.exception().is_some_and(ExceptionCode::is_of_gateway) {
+            return;
         }
-        self.debts.answered(late.unit, &late.frame, now);
+        let now = self.line.now();
+        self.recent.note(now, unit, frame, reply);
+        if reply.function() == FunctionCode::Diagnostics && self.knows_echo() {
+            self.debts.answered_at_last(unit, frame);
+        } else {
+            self.debts.answered(unit, frame, now);
+        }
     }
 
     /// How long the normal answer to a request takes on the wire.

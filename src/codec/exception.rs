@@ -26,6 +26,14 @@ impl ExceptionCode {
     /// 0B: a gateway got no answer from the meter behind it.
     pub const GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND: Self = Self(0x0B);
 
+    /// Whether a gateway says so (0A, 0B), and not the unit behind it: that one can still answer.
+    pub const fn is_of_gateway(self) -> bool {
+        matches!(
+            self,
+            Self::GATEWAY_PATH_UNAVAILABLE | Self::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND
+        )
+    }
+
     /// The standard's name, where the code has one.
     pub const fn name(self) -> Option<&'static str> {
         Some(match self {

@@ -10,7 +10,7 @@ use super::error::DecodeError;
 use super::length::MOST_DATA_BYTES;
 
 /// Bytes before the data unit.
-pub const HEADER_BYTES: usize = 7;
+const HEADER_BYTES: usize = 7;
 
 /// Bytes before those that the length counts.
 const UNCOUNTED: usize = 6;

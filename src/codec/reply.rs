@@ -23,6 +23,14 @@ pub enum Reply {
 }
 
 impl Reply {
+    /// The function it answers.
+    pub fn function(&self) -> FunctionCode {
+        match self {
+            Self::Normal(response) => response.function(),
+            Self::Exception { function, .. } => *function,
+        }
+    }
+
     /// Why it refuses; `None` for a normal response.
     pub const fn exception(&self) -> Option<ExceptionCode> {
         match self {

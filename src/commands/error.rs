@@ -28,13 +28,13 @@ pub enum CommandError {
         /// The name.
         name: String,
     },
-    /// An option that has no effect on the format asked for.
-    #[error("{option} is for {format}")]
+    /// An option that has no effect on what was asked for.
+    #[error("{option} is for {what}")]
     NoEffect {
         /// The option.
         option: &'static str,
-        /// What it is for.
-        format: &'static str,
+        /// What it has an effect on: a format, one unit, a serial port.
+        what: &'static str,
     },
     /// A meter whose profile says nothing that could be tested.
     #[error("the profile of {meter} has no [[identities]] that could be tested")]

@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &Loopback, report: &mut Report) -> Result<ExitCode,
     if arguments.forever && units.len() > 1 {
         return Err(CommandError::NoEffect {
             option: "--forever",
-            format: "one unit",
+            what: "one unit",
         });
     }
     let line = LinePlan::new(&arguments.line, profile.as_ref());

@@ -126,7 +126,7 @@ fn read(
 /// Refuses options that would do nothing.
 fn effects(arguments: &ReadRegisters) -> Result<(), CommandError> {
     let is_csv = arguments.format == FormatChoice::Csv;
-    let no_effect = |option, format| Err(CommandError::NoEffect { option, format });
+    let no_effect = |option, what| Err(CommandError::NoEffect { option, what });
     match arguments.layout {
         Some(_) if arguments.plan => no_effect("--layout", "readings"),
         _ if arguments.plan && arguments.units => no_effect("--units", "readings"),
@@ -161,7 +161,7 @@ fn points(
         if arguments.function.is_some() && !is_heard {
             return Err(CommandError::NoEffect {
                 option: "--function",
-                format: "registers by address, or a meter whose functions 03 and 04 are one",
+                what: "registers by address, or a meter whose functions 03 and 04 are one",
             });
         }
     }

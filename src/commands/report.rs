@@ -221,7 +221,8 @@ fn hint(error: &CommandError) -> Option<String> {
         }
         CommandError::UnitTwice { .. } => "units are given with the meter: --meter pqm=17,18",
         CommandError::Pty(PtyError::Exists { .. }) => {
-            "a pty needs a name that is free; one that was killed leaves its own behind"
+            "a pty needs a name that is free; a simulation that was killed leaves its own behind: \
+             remove it when none runs there any more"
         }
         CommandError::FaultNotShown { .. } => "rtu+tcp:// and ptys show all faults",
         CommandError::Open(error) => return open_hint(error),
@@ -303,6 +304,10 @@ pub(super) fn failure_hint(failure: &Failure) -> Option<&'static str> {
         }
         Failure::Mismatch { .. } => {
             "a late answer or a second master on the line; a longer --timeout helps with the first"
+        }
+        Failure::Ambiguous => {
+            "the meter has missed more than one read: a longer --timeout helps when it is slow; else \
+             try again in ten seconds"
         }
         Failure::NeverQuiet { .. } => {
             "another master may be talking on this line, or its bias resistors are missing"

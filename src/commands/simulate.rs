@@ -23,8 +23,8 @@ const PATIENCE: Duration = Duration::from_millis(100);
 /// How long clients may take to read what they were sent last.
 const FAREWELL: Duration = Duration::from_secs(1);
 
-/// Serves until a signal comes, the line is lost, or as many requests are answered as were asked
-/// for.
+/// Serves until a signal comes, the line is lost, or as many requests were heard as were asked for
+/// and what answers them is out.
 pub(super) fn run(arguments: &Simulate, report: &Report) -> Result<ExitCode, CommandError> {
     let place = Place::of(arguments.port.as_deref())?;
     let wanted = meters::wanted(arguments)?;
@@ -32,7 +32,6 @@ pub(super) fn run(arguments: &Simulate, report: &Report) -> Result<ExitCode, Com
     let framing = place.framing(settings);
     let script = faults::script(arguments, framing)?;
     let clock: Arc<dyn Clock> = Arc::new(SystemClock::new());
-    let words = words(&place, &wanted);
     let meters = wanted.make(arguments, clock.utc_now())?;
     let service = Service {
         framing,
@@ -45,7 +44,7 @@ pub(super) fn run(arguments: &Simulate, report: &Report) -> Result<ExitCode, Com
     let (outside, name) = place.open(settings, arguments.wait, &*clock)?;
     print(format!("{name}\n").as_bytes())?;
     if io::stderr().is_terminal() {
-        report.remark(&words.replace("PORT", &name));
+        report.remark(&words(&place, &wanted, &name));
     }
     let mut server = Server::new(outside, meters, service, clock);
     let result = serve(&mut server, &stop);
@@ -79,12 +78,12 @@ fn serve<O: Outside>(server: &mut Server<O>, stop: &Stop) -> Result<State, Comma
     Ok(state)
 }
 
-/// What is there and how to read it, with `PORT` for where it is.
-fn words(place: &Place, wanted: &meters::Wanted) -> String {
+/// What is there and how to read it, by the name of the place.
+fn words(place: &Place, wanted: &meters::Wanted, name: &str) -> String {
     let meters = wanted.told();
     let read = match wanted.last() {
         Some((meter, unit)) if place.is_line() => {
-            format!("\nread it: meterpoll read-registers -p PORT -a {unit} --meter {meter}")
+            format!("\nread it: meterpoll read-registers -p {name} -a {unit} --meter {meter}")
         }
         _ => String::new(),
     };

@@ -45,9 +45,10 @@ impl fmt::Display for Fault {
 impl From<&Failure> for Fault {
     fn from(failure: &Failure) -> Self {
         match failure {
-            Failure::Silence { .. } | Failure::OnlyEcho | Failure::NeverQuiet { .. } => {
-                Self::Timeout
-            }
+            Failure::Silence { .. }
+            | Failure::OnlyEcho
+            | Failure::Ambiguous
+            | Failure::NeverQuiet { .. } => Self::Timeout,
             Failure::Truncated { .. } => Self::Truncated,
             Failure::Damaged { .. } => Self::Crc,
             Failure::Mismatch { .. } => Self::Mismatch,

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::kinds;
 use super::meter::Meter;
-use crate::codec::{Unit, UnitRange};
 use crate::transport::{Clock, OpenError, Transport, TransportError};
 
 /// A line inside the program. What is sent into it is heard by every meter on it at once, and
@@ -20,33 +20,15 @@ pub struct SimulatedLine {
 }
 
 impl SimulatedLine {
-    /// The unit of the EM24-DIN on the line that [`Self::new`] makes.
-    pub const EM24_UNIT: u16 = 1;
-    /// The unit of its PM290.
-    pub const PM290_UNIT: u16 = 2;
-    /// The unit of its EM21.
-    pub const EM21_UNIT: u16 = 3;
-    /// The unit of its PQM.
-    pub const PQM_UNIT: u16 = 17;
-
     /// A line with one meter of each kind on it; their loads come from `seed`.
     pub fn new(seed: u64, clock: Arc<dyn Clock>) -> Self {
         Self::with_meters(Self::meters(seed), clock)
     }
 
-    /// The meters on the line that [`Self::new`] makes, each with a load of its own.
-    ///
-    /// # Panics
-    /// Never: the constants are units.
+    /// The meters on the line that [`Self::new`] makes, each with a load of its own: those of
+    /// [`kinds`].
     pub fn meters(seed: u64) -> Vec<Meter> {
-        #[expect(clippy::expect_used, reason = "constants in range")]
-        let unit = |number| Unit::new(number, UnitRange::Standard).expect("1 to 247");
-        vec![
-            Meter::em24(unit(Self::EM24_UNIT), seed.wrapping_add(1)),
-            Meter::pm290(unit(Self::PM290_UNIT), seed.wrapping_add(2)),
-            Meter::em21(unit(Self::EM21_UNIT), seed.wrapping_add(3)),
-            Meter::pqm(unit(Self::PQM_UNIT), seed),
-        ]
+        kinds::usual_meters(seed)
     }
 
     /// A line with these meters on it. Two of the same unit both answer, one after the other.

@@ -74,7 +74,7 @@ impl Meter {
 
     /// # Panics
     /// When no built-in meter has this name; tests make a meter of every name that is given here.
-    fn builtin(
+    pub(super) fn builtin(
         unit: Unit,
         name: &'static str,
         model: impl FnOnce() -> Box<dyn Model> + Send + 'static,

@@ -103,7 +103,8 @@ pub enum ServeError {
 pub enum State {
     /// There is more to come.
     Serving,
-    /// As many requests as were to be heard are answered.
+    /// As many requests as were to be heard have been, and all that is answered to them is out, but
+    /// for what has no end.
     Done,
     /// The line has hung up for good.
     HungUp,
@@ -253,6 +254,9 @@ impl<O: Outside> Server<O> {
                         transaction,
                         frame,
                     });
+                } else {
+                    info!("lost a request to unit {unit}: {MOST_WAITING} wait already");
+                    self.tally.lost();
                 }
             }
         }
@@ -299,9 +303,11 @@ impl<O: Outside> Server<O> {
         self.deliver()
     }
 
-    /// Sends what the line has said by now.
+    /// Sends what the line has said by now. What comes while that is sent is left to the next turn:
+    /// a stream that is faster than it is sent would keep the server here for ever.
     fn deliver(&mut self) -> Result<State, ServeError> {
-        if self.answer_at.is_some_and(|at| at <= self.clock.now()) {
+        let now = self.clock.now();
+        if self.answer_at.is_some_and(|at| at <= now) {
             self.answer_at = None;
         }
         let mut chunk = [0; 512];
@@ -310,6 +316,9 @@ impl<O: Outside> Server<O> {
                 Ok(0) => return Ok(State::Serving),
                 Ok(count) => self.say(chunk.get(..count).unwrap_or_default())?,
                 Err(_) => return self.hang_up(),
+            }
+            if self.line.next_due().is_some_and(|due| due > now) {
+                return Ok(State::Serving);
             }
         }
     }
@@ -383,9 +392,10 @@ impl<O: Outside> Server<O> {
         self.line.next_due().is_none() && self.answer_at.is_none()
     }
 
-    /// Whether nothing more is to be heard, or said.
+    /// Whether nothing more is to be heard, or said: however late an answer is, it is waited for.
     fn is_done(&self) -> bool {
-        self.has_heard_all() && (self.is_quiet() || self.has_gone_on_for_ever())
+        let has_ended = self.answer_at.is_none() && self.line.next_due_of_what_ends().is_none();
+        self.has_heard_all() && has_ended && (self.is_quiet() || self.has_gone_on_for_ever())
     }
 
     /// What has no end does not keep the server.

@@ -56,7 +56,7 @@
 //! | `timeout` | what time-outs are | 1s |
 //! | `rest` | when the rest of a cut comes, in time-outs | never |
 //! | `gap` | from the first piece to the second; of `echo` and `stranger`, from the end of the request to the answer | 16ms for `split`, else at once |
-//! | `every` | from one byte, or frame, to the next | as above |
+//! | `every` | from one byte, or frame, to the next; 100us or more, as for `drip` | as above |
 //! | `lasts` | how long that goes on | until the next request |
 //! | `with`, `without` | kinds that `any` picks as well, or does not pick: `hang-up+garbage` | all but `hang-up` |
 //!

@@ -91,7 +91,12 @@ impl Listener {
         let (sender, events) = sync_channel(MOST_WAITING);
         let is_over = Arc::new(AtomicBool::new(false));
         let is_over_there = Arc::clone(&is_over);
-        thread::spawn(move || accept(&socket, &sender, &is_over_there));
+        thread::Builder::new()
+            .spawn(move || accept(&socket, &sender, &is_over_there))
+            .map_err(|source| ListenError::Other {
+                address: name(),
+                source,
+            })?;
         Ok(Self {
             address: bound,
             clients: BTreeMap::new(),
@@ -184,6 +189,13 @@ impl Drop for Listener {
             });
         }
         let _ = TcpStream::connect_timeout(&address, WRITE_WAIT);
+        // Until all threads have ended; those of clients that have come and were not heard of yet
+        // end with their streams.
+        while let Ok(event) = self.events.recv_timeout(WRITE_WAIT) {
+            if let Event::Came(_, stream) = event {
+                let _ = stream.shutdown(Shutdown::Both);
+            }
+        }
     }
 }
 
@@ -200,19 +212,28 @@ fn accept(socket: &TcpListener, events: &SyncSender<Event>, is_over: &AtomicBool
             Ok((stream.try_clone()?, stream))
         });
         match came {
-            Err(error) => {
-                log::debug!("a client could not connect: {error}");
-                thread::sleep(TRY_AGAIN);
-            }
+            Err(error) => give_up(&error),
             Ok((reader, writer)) => {
                 if events.send(Event::Came(client, writer)).is_err() {
                     return;
                 }
-                let events = events.clone();
-                thread::spawn(move || read(client, reader, &events));
+                let theirs = events.clone();
+                let started = thread::Builder::new().spawn(move || read(client, reader, &theirs));
+                if let Err(error) = started {
+                    give_up(&error);
+                    if events.send(Event::Left(client)).is_err() {
+                        return;
+                    }
+                }
             }
         }
     }
+}
+
+/// The system has run out of what a client takes: others end some time.
+fn give_up(error: &io::Error) {
+    log::debug!("a client could not connect: {error}");
+    thread::sleep(TRY_AGAIN);
 }
 
 fn read(client: ClientId, mut stream: TcpStream, events: &SyncSender<Event>) {

@@ -67,7 +67,8 @@ impl Pty {
     /// is dropped.
     ///
     /// # Errors
-    /// [`PtyError`]; nothing of that name may exist.
+    /// [`PtyError`]; nothing of that name may exist. A link to a pty that was there before is of a
+    /// program that still runs, or of one that was killed: by now somebody's terminal may be there.
     pub fn named(name: &Path) -> Result<Self, PtyError> {
         let mut pty = Self::new()?;
         let path = || name.display().to_string();
@@ -183,8 +184,7 @@ impl Outside for Pty {
 impl Ends {
     /// A raw pty and the path of the clients' end; no child process inherits either end.
     fn new() -> io::Result<(Self, String)> {
-        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
-        let ours = openpt(flags | OpenptFlags::CLOEXEC)?;
+        let ours = open_ours()?;
         grantpt(&ours)?;
         unlockpt(&ours)?;
         let path = ptsname(&ours, Vec::new())?;
@@ -256,6 +256,20 @@ impl Ends {
     }
 }
 
+#[cfg(any(target_os = "linux", target_os = "freebsd", target_os = "netbsd"))]
+fn open_ours() -> io::Result<OwnedFd> {
+    let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
+    Ok(openpt(flags | OpenptFlags::CLOEXEC)?)
+}
+
+/// Other systems know no such flag for ptys: a child that is made between these two inherits it.
+#[cfg(not(any(target_os = "linux", target_os = "freebsd", target_os = "netbsd")))]
+fn open_ours() -> io::Result<OwnedFd> {
+    let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
+    rustix::io::fcntl_setfd(&ours, rustix::io::FdFlags::CLOEXEC)?;
+    Ok(ours)
+}
+
 /// A name beside this one that nobody else takes.
 fn aside(link: &Path) -> PathBuf {
     let mut name = link.file_name().unwrap_or_default().to_owned();
@@ -263,8 +277,32 @@ fn aside(link: &Path) -> PathBuf {
     link.with_file_name(name)
 }
 
+/// Whether this is a link, from outside of `/dev`, to the clients' end of a pty.
+pub fn is_link_to_pty(path: &Path) -> bool {
+    let is_link = path
+        .symlink_metadata()
+        .is_ok_and(|found| found.is_symlink());
+    let target = || path.canonicalize().unwrap_or_default();
+    is_link && !path.starts_with("/dev") && is_pty(&target())
+}
+
+#[cfg(not(target_os = "macos"))]
+fn is_pty(path: &Path) -> bool {
+    path.starts_with("/dev/pts")
+}
+
+/// `/dev/ttys003`; serial ports have a dot in their names.
+#[cfg(target_os = "macos")]
+fn is_pty(path: &Path) -> bool {
+    let number = path
+        .to_str()
+        .and_then(|path| path.strip_prefix("/dev/ttys"));
+    number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
 fn kind_of_file(path: &Path) -> &'static str {
     match path.symlink_metadata().map(|found| found.file_type()) {
+        _ if is_link_to_pty(path) => "a link to a pty",
         Ok(kind) if kind.is_dir() => "a directory",
         Ok(kind) if kind.is_symlink() && !path.exists() => "a link that leads nowhere",
         Ok(kind) if kind.is_file() => "a file",

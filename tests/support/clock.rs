@@ -8,11 +8,12 @@ use std::time::Duration;
 use jiff::Timestamp;
 use meterpoll::transport::Clock;
 
-/// Starts at 0 and moves by `sleep` and `advance` alone, so that a test of waiting takes no time
+/// Starts at 0 and, but for one that [`Self::costs`] time, moves by `sleep` and `advance` alone, so that a test of waiting takes no time
 /// and always ends the same. Shared in an `Arc`, all its holders see the same time.
 #[derive(Debug)]
 pub(crate) struct FakeClock {
     nanoseconds: AtomicU64,
+    look: AtomicU64,
     start: Timestamp,
 }
 
@@ -26,20 +27,26 @@ impl FakeClock {
     pub(crate) fn starting(at: &str) -> Self {
         Self {
             nanoseconds: AtomicU64::new(0),
+            look: AtomicU64::new(0),
             start: at.parse().unwrap(),
         }
     }
 
     /// Moves the time on.
     pub(crate) fn advance(&self, time: Duration) {
-        let nanoseconds = u64::try_from(time.as_nanos()).unwrap();
-        self.nanoseconds.fetch_add(nanoseconds, Ordering::SeqCst);
+        self.nanoseconds.fetch_add(count(time), Ordering::SeqCst);
+    }
+
+    /// From now on so much time passes at each look at the clock, as on a machine that is slow.
+    pub(crate) fn costs(&self, time: Duration) {
+        self.look.store(count(time), Ordering::SeqCst);
     }
 }
 
 impl Clock for FakeClock {
     fn now(&self) -> Duration {
-        Duration::from_nanos(self.nanoseconds.load(Ordering::SeqCst))
+        let cost = self.look.load(Ordering::SeqCst);
+        Duration::from_nanos(self.nanoseconds.fetch_add(cost, Ordering::SeqCst))
     }
 
     fn sleep(&self, time: Duration) {
@@ -49,4 +56,8 @@ impl Clock for FakeClock {
     fn utc_now(&self) -> Timestamp {
         self.start + self.now()
     }
+}
+
+fn count(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap()
 }

@@ -55,6 +55,8 @@ impl Outside for ScriptedOutside {
 
     fn say(&mut self, client: ClientId, bytes: &[u8]) -> Result<(), TransportError> {
         self.note(|now| Seen::Said(now, client.0, bytes.to_vec()));
+        let said = self.seen.lock().unwrap().len();
+        assert!(said < 100_000, "it says more and more");
         Ok(())
     }
 
@@ -70,6 +72,8 @@ impl Outside for ScriptedOutside {
 pub(crate) struct Scene {
     pub(crate) service: Service,
     pub(crate) afterwards: Afterwards,
+    /// What a look at the clock costs.
+    pub(crate) look: Duration,
     script: Vec<(Duration, Heard)>,
 }
 
@@ -85,6 +89,7 @@ impl Scene {
                 count: None,
             },
             afterwards: Afterwards::Open,
+            look: Duration::ZERO,
             script: Vec::new(),
         }
     }
@@ -118,6 +123,7 @@ impl Scene {
     /// Plays it until this millisecond, or until the server ends.
     pub(crate) fn until(self, end: u64) -> Played {
         let clock = Arc::new(FakeClock::new());
+        clock.costs(self.look);
         let seen = Arc::default();
         let outside = ScriptedOutside {
             clock: Arc::clone(&clock),

@@ -5,7 +5,7 @@
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
-use std::process::{Child, ChildStderr, Command, Stdio};
+use std::process::{Child, ChildStderr, ChildStdout, Command, Stdio};
 
 use super::program::Program;
 
@@ -14,6 +14,7 @@ pub(crate) struct Simulation {
     child: Child,
     /// What the first line on stdout says.
     pub(crate) path: String,
+    stdout: BufReader<ChildStdout>,
     stderr: ChildStderr,
 }
 
@@ -22,22 +23,27 @@ pub(crate) struct Simulation {
 pub(crate) struct Ended {
     pub(crate) code: Option<i32>,
     pub(crate) signal: Option<i32>,
+    pub(crate) stdout: String,
     pub(crate) stderr: String,
 }
 
 impl Ended {
+    /// With nothing more on stdout.
     pub(crate) fn with(code: i32, stderr: &str) -> Self {
         Self {
             code: Some(code),
             signal: None,
+            stdout: String::new(),
             stderr: stderr.to_owned(),
         }
     }
 
+    /// By a signal, with nothing more on stdout.
     pub(crate) fn by(signal: i32, stderr: &str) -> Self {
         Self {
             code: None,
             signal: Some(signal),
+            stdout: String::new(),
             stderr: stderr.to_owned(),
         }
     }
@@ -58,14 +64,14 @@ impl Simulation {
             .expect("the program starts");
         let mut first = String::new();
         let stdout = child.stdout.take().expect("it is piped");
-        BufReader::new(stdout)
-            .read_line(&mut first)
-            .expect("a line");
+        let mut stdout = BufReader::new(stdout);
+        stdout.read_line(&mut first).expect("a line");
         let stderr = child.stderr.take().expect("it is piped");
         let path = first.trim_end().to_owned();
         let mut simulation = Self {
             child,
             path,
+            stdout,
             stderr,
         };
         if simulation.path.is_empty() {
@@ -101,12 +107,14 @@ impl Simulation {
     }
 
     fn wait(&mut self) -> Ended {
-        let mut stderr = String::new();
+        let (mut stdout, mut stderr) = (String::new(), String::new());
         self.stderr.read_to_string(&mut stderr).expect("text");
+        self.stdout.read_to_string(&mut stdout).expect("text");
         let status = self.child.wait().expect("it ends");
         Ended {
             code: status.code(),
             signal: status.signal(),
+            stdout,
             stderr,
         }
     }

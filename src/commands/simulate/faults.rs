@@ -22,9 +22,7 @@ pub(super) fn script(arguments: &Simulate, framing: Framing) -> Result<FaultScri
             CommandError::FaultsUnreadable { file, source }
         })?;
         let more = FaultScript::from_text(&text).map_err(wrong(Some(&file)))?;
-        let texts = script.rules().iter().chain(more.rules());
-        let texts: Vec<String> = texts.map(|rule| rule.text().to_owned()).collect();
-        script = FaultScript::parse(texts).map_err(wrong(Some(&file)))?;
+        script = script.followed_by(more);
     }
     let is_hidden = |rule: &&FaultRule| !framing.shows(rule.kind());
     if let Some(rule) = script.rules().iter().find(is_hidden) {

@@ -71,15 +71,15 @@ impl Wanted {
 
     /// Makes them, with the values of a file where there is one.
     pub(super) fn make(
-        self,
+        &self,
         arguments: &Simulate,
         now: Timestamp,
     ) -> Result<Vec<Meter>, CommandError> {
         let mut meters: Vec<Meter> = Vec::new();
-        for (profile, units) in self.0 {
+        for (profile, units) in &self.0 {
             let made = units
-                .into_iter()
-                .map(|unit| kinds::meter(profile.clone(), unit, arguments.seed));
+                .iter()
+                .map(|unit| kinds::meter(profile.clone(), *unit, arguments.seed));
             meters.extend(made);
         }
         if let Some(file) = &arguments.values {

@@ -10,7 +10,7 @@ use crate::sim::server::Framing;
 use crate::transport::listen::Listener;
 use crate::transport::outside::SerialOutside;
 #[cfg(unix)]
-use crate::transport::pty::Pty;
+use crate::transport::pty::{Pty, is_link_to_pty};
 use crate::transport::{Clock, LineSettings, Outside, PtyError};
 
 /// Silence that ends what has no end of its own: far longer than the pauses of a program that was
@@ -50,7 +50,8 @@ impl Place {
         }
         let path = Path::new(port);
         // A slip in the name of a port must not make one.
-        if cfg!(windows) || path.starts_with("/dev") || path.exists() {
+        let is_there = path.exists() && !is_link_to_pty(path);
+        if cfg!(windows) || path.starts_with("/dev") || is_there {
             return Ok(Self::Serial(port.to_owned()));
         }
         Ok(Self::Pty(Some(path.to_owned())))
@@ -87,7 +88,7 @@ impl Place {
         match useless.iter().find(|(_, is_given)| *is_given) {
             Some((option, _)) if !matches!(self, Self::Serial(_)) => Err(CommandError::NoEffect {
                 option,
-                format: "a serial port",
+                what: "a serial port",
             }),
             _ => Ok(settings(baud, parity, stop_bits, factory)),
         }
@@ -126,6 +127,11 @@ fn pty(name: Option<&Path>) -> Result<(Box<dyn Outside>, String), PtyError> {
     };
     let path = pty.path();
     Ok((Box::new(pty), path))
+}
+
+#[cfg(not(unix))]
+fn is_link_to_pty(_: &Path) -> bool {
+    false
 }
 
 #[cfg(not(unix))]

@@ -145,7 +145,9 @@ impl Tally {
             Failure::Damaged { .. } => &mut failed.damaged,
             Failure::Truncated { .. } => &mut failed.truncated,
             Failure::Mismatch { .. } => &mut failed.mismatched,
-            Failure::NeverQuiet { .. } | Failure::Port(_) => &mut failed.unsent,
+            Failure::Ambiguous | Failure::NeverQuiet { .. } | Failure::Port(_) => {
+                &mut failed.unsent
+            }
         } += 1;
     }
 

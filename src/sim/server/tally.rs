@@ -13,8 +13,13 @@ pub struct Tally {
     requests: BTreeMap<u8, u64>,
     answers: u64,
     exceptions: BTreeMap<ExceptionCode, u64>,
+    /// Pieces that went out and were no whole, right frame.
     spoiled: u64,
+    /// Requests to units that are not here.
     foreign: u64,
+    /// Requests for which there was no room among those that wait.
+    lost: u64,
+    /// Stretches of bytes that were no request.
     damaged: u64,
 }
 
@@ -38,16 +43,6 @@ impl Tally {
     /// Exception responses with this code.
     pub fn exceptions(&self, code: ExceptionCode) -> u64 {
         self.exceptions.get(&code).copied().unwrap_or_default()
-    }
-
-    /// Pieces that went out and were no whole, right frame.
-    pub const fn spoiled(&self) -> u64 {
-        self.spoiled
-    }
-
-    /// Requests to units that are not here.
-    pub const fn not_for_us(&self) -> u64 {
-        self.foreign
     }
 
     /// Stretches of bytes that were no request.
@@ -76,6 +71,10 @@ impl Tally {
         self.foreign += 1;
     }
 
+    pub(super) const fn lost(&mut self) {
+        self.lost += 1;
+    }
+
     pub(super) const fn damaged(&mut self) {
         self.damaged += 1;
     }
@@ -102,6 +101,7 @@ impl fmt::Display for Tally {
         for (number, what) in [
             (self.spoiled, "spoiled"),
             (self.foreign, "to other units"),
+            (self.lost, "lost because too many waited"),
             (self.damaged, "not understood"),
         ] {
             if number > 0 {

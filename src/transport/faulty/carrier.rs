@@ -97,13 +97,29 @@ impl<T: Transport> Faulty<T> {
     /// with no wait after each request.
     pub fn next_due(&self) -> Option<Duration> {
         let stream = self.stream.as_ref().and_then(Stream::next_at);
+        [self.next_due_of_pieces(), stream]
+            .into_iter()
+            .flatten()
+            .min()
+    }
+
+    /// The same, for all but a stream that goes on until the next request.
+    pub fn next_due_of_what_ends(&self) -> Option<Duration> {
+        let stream = self.stream.as_ref().filter(|stream| stream.ends());
+        [self.next_due_of_pieces(), stream.and_then(Stream::next_at)]
+            .into_iter()
+            .flatten()
+            .min()
+    }
+
+    fn next_due_of_pieces(&self) -> Option<Duration> {
         let answer = match &self.answer {
             Answer::Gathered(gathered) if !gathered.bytes.is_empty() => {
                 Some(gathered.last.saturating_add(GAP))
             }
             _ => None,
         };
-        [self.schedule.next_at(), stream, answer]
+        [self.schedule.next_at(), answer]
             .into_iter()
             .flatten()
             .min()

@@ -186,7 +186,7 @@ fn effect(kind: FaultKind, fields: &mut Fields<'_>) -> Result<Effect, RuleProble
 }
 
 fn timeout(fields: &mut Fields<'_>) -> Result<Duration, RuleProblem> {
-    Ok(fields.key("timeout", values::pace)?.unwrap_or(TIMEOUT))
+    Ok(fields.key("timeout", values::span)?.unwrap_or(TIMEOUT))
 }
 
 fn gap(fields: &mut Fields<'_>) -> Result<Duration, RuleProblem> {

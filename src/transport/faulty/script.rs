@@ -53,6 +53,13 @@ impl FaultScript {
         Ok(script)
     }
 
+    /// These rules, and those of another script after them; its seed has no say.
+    #[must_use]
+    pub fn followed_by(mut self, other: Self) -> Self {
+        self.rules.extend(other.rules);
+        self
+    }
+
     fn add(&mut self, rule: &str, line: Option<usize>) -> Result<(), FaultScriptError> {
         let rule = rule.trim();
         let parsed = FaultRule::parse(rule).map_err(|problem| FaultScriptError {

@@ -40,6 +40,11 @@ impl Stream {
         }
     }
 
+    /// Whether it is over some time, without another request.
+    pub(super) const fn ends(&self) -> bool {
+        self.until.is_some()
+    }
+
     /// When the next bytes are due; `None` when it is over.
     pub(super) fn next_at(&self) -> Option<Duration> {
         let is_over = self.until.is_some_and(|until| self.next_at >= until);

@@ -13,6 +13,10 @@ pub(super) type Reader<T> = fn(&str) -> Result<T, &'static str>;
 /// The longest time, as for options.
 const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 
+/// The shortest time from one byte to the next: about that of 115200 baud, and far more than it
+/// takes to make one. What comes faster than it is made never ends.
+const SHORTEST_PACE: Duration = Duration::from_micros(100);
+
 pub(super) fn time(text: &str) -> Result<Duration, &'static str> {
     humantime::parse_duration(text)
         .ok()
@@ -20,12 +24,20 @@ pub(super) fn time(text: &str) -> Result<Duration, &'static str> {
         .ok_or("a time with its unit to 24h, such as 40ms")
 }
 
-/// A time that passes: what happens every 0 s happens infinitely often.
-pub(super) fn pace(text: &str) -> Result<Duration, &'static str> {
+/// A time that passes, such as a time-out.
+pub(super) fn span(text: &str) -> Result<Duration, &'static str> {
     time(text)
         .ok()
         .filter(|time| !time.is_zero())
         .ok_or("a time with its unit above 0 and to 24h, such as 20ms")
+}
+
+/// The time from one of many to the next.
+pub(super) fn pace(text: &str) -> Result<Duration, &'static str> {
+    time(text)
+        .ok()
+        .filter(|time| *time >= SHORTEST_PACE)
+        .ok_or("a time with its unit from 100us to 24h, such as 20ms")
 }
 
 pub(super) fn time_outs(text: &str) -> Result<f64, &'static str> {
