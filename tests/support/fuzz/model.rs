@@ -18,8 +18,6 @@ pub(crate) enum Manner {
     Late,
     /// Answers are in time and may come twice; nothing is asked twice.
     Copies,
-    /// Answers may be late, missing, or in pieces, and may come twice; nothing is asked twice.
-    LateCopies,
     /// Nothing is wrong.
     Good,
 }
@@ -47,7 +45,7 @@ impl Model {
 
     /// Whether answers may come twice.
     pub(crate) fn makes_copies(&self) -> bool {
-        matches!(self.manner, Manner::Copies | Manner::LateCopies)
+        self.manner == Manner::Copies
     }
 
     /// What comes back to a request whose last byte has left the wire at `end`.
@@ -57,7 +55,7 @@ impl Model {
             chunks.push((Duration::ZERO, frame.to_vec()));
         }
         let limit = match self.manner {
-            Manner::Late | Manner::LateCopies => 1940,
+            Manner::Late => 1940,
             Manner::Copies => 500,
             Manner::Good => 40,
         };
@@ -70,7 +68,6 @@ impl Model {
         let kind = match self.manner {
             Manner::Late => self.cursor.below(16),
             Manner::Copies => 14 + self.cursor.below(4),
-            Manner::LateCopies => self.cursor.pick(&[0, 8, 9, 14, 16]),
             Manner::Good => 14,
         };
         chunks.extend(self.spoil(frame, whole, delay, kind));

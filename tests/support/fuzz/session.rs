@@ -44,9 +44,6 @@ pub(crate) fn session(data: &[u8]) {
         let (address, count) = (cursor.byte(), 1 + cursor.byte() % 5);
         let number = cursor.pick(&[17, 17, 17, 18, 4]);
         session.patience.retries = u32::from(cursor.byte() % 3);
-        if session.model().manner == Manner::LateCopies {
-            session.patience.retries = 0;
-        }
         let idle = u64::from(cursor.byte());
         session.bench.clock.advance(Duration::from_millis(idle * 4));
         if cursor.below(64) == 0 {
@@ -93,12 +90,7 @@ impl Session {
             baud: cursor.pick(&[9600, 9600, 19_200, 115_200]),
             ..LineSettings::default()
         };
-        let manner = cursor.pick(&[
-            Manner::Late,
-            Manner::Late,
-            Manner::Copies,
-            Manner::LateCopies,
-        ]);
+        let manner = cursor.pick(&[Manner::Late, Manner::Late, Manner::Copies]);
         let echo = cursor.pick(&[false, false, true]);
         let ways = Ways {
             interchangeable_reads: cursor.chance(),
