@@ -219,3 +219,35 @@ fn a_register_read_over_and_over_behind_a_repeater_does_not_shift_the_others() {
         assert_eq!(values.into_vec()[0] >> 8, address);
     }
 }
+
+#[test]
+fn a_copy_that_comes_after_the_wait_for_a_late_answer_is_none_either() {
+    let mut bench = Bench::known();
+    let mut count = 0;
+    let mut first = Vec::new();
+    bench.line.meter(move |frame| {
+        count += 1;
+        let mut own = answer(frame);
+        match count {
+            1 => {
+                own[4] ^= 1;
+                vec![(ms(10), own)]
+            }
+            2 => {
+                first = own.clone();
+                vec![(ms(10), own)]
+            }
+            3 => vec![(ms(1), first.clone()), (ms(20), own)],
+            _ => vec![(ms(20), own)],
+        }
+    });
+    for address in 1..5 {
+        let patience = Patience {
+            timeout: ms(100),
+            ..Patience::default()
+        };
+        let response = bench.client.request(unit(17), &read(address, 1), patience);
+        let expected = true_response(unit(17), address, 1);
+        assert_eq!(response.expect("an answer"), expected);
+    }
+}

@@ -11,9 +11,9 @@ mod ways;
 use std::time::Duration;
 
 use meterpoll::client::{Failure, Patience, QueryData, Ways};
-use meterpoll::codec::ExceptionCode;
+use meterpoll::codec::{ExceptionCode, Response};
 
-use self::script::{Bench, read, unit};
+use self::script::{Bench, read, truth, unit};
 use self::ways::{BOTH, FUNCTIONS_ONLY, LOOPBACK_ONLY, TOO_LATE, answer, exception, ms};
 
 #[test]
@@ -416,4 +416,49 @@ fn an_adapter_that_came_back_is_not_known_to_be_without_echo() {
     for address in [2, 3] {
         let _ = bench.reads(address, LOOPBACK_ONLY);
     }
+}
+
+#[test]
+fn what_a_busy_unit_answers_all_the_same_is_not_the_answer_to_the_next_register() {
+    for ways in [FUNCTIONS_ONLY, BOTH] {
+        let mut bench = Bench::known();
+        let mut count = 0;
+        bench.line.meter(move |frame| {
+            count += 1;
+            let busy = exception(frame, ExceptionCode::SERVER_DEVICE_BUSY);
+            match count {
+                1 => vec![(ms(10), answer(frame)[..4].to_vec())],
+                2 => vec![(ms(10), busy), (ms(800), answer(frame))],
+                _ => vec![(ms(40), answer(frame))],
+            }
+        });
+        let patience = Patience {
+            ways,
+            ..Patience::default()
+        };
+        for address in 1..20 {
+            let response = bench.client.request(unit(17), &read(address, 1), patience);
+            let Ok(Response::Registers { values, .. }) = response else {
+                panic!("{response:?}");
+            };
+            assert_eq!(values.into_vec(), [truth(17, address)]);
+        }
+    }
+}
+
+#[test]
+fn a_busy_unit_holds_nobody_up_once_it_has_answered() {
+    let mut bench = Bench::known();
+    let mut count = 0;
+    bench.line.meter(move |frame| {
+        count += 1;
+        match count {
+            1 | 2 => vec![(ms(10), exception(frame, ExceptionCode::SERVER_DEVICE_BUSY))],
+            _ => vec![(ms(10), answer(frame))],
+        }
+    });
+    bench.reads(1, Ways::default()).expect("an answer");
+    let answered = bench.now();
+    bench.reads(2, Ways::default()).expect("an answer");
+    assert!(bench.now() < answered + ms(30));
 }

@@ -36,6 +36,8 @@ struct Debt {
     /// From when on nobody reckons with it any more.
     forget_at: Duration,
     longest_answer: Duration,
+    /// The unit has said that it is at work on it, or busy.
+    is_put_off: bool,
 }
 
 /// What one unit owes.
@@ -88,12 +90,13 @@ impl Account {
     /// The answer to the oldest of equal requests is there: which of them it answers, nothing in it
     /// tells, and the others can still be answered. Returns the debt that is paid.
     fn pay(&mut self, frame: &Frame) -> Option<Debt> {
-        [&mut self.overdue, &mut self.awaited]
-            .into_iter()
-            .find_map(|debts| {
-                let index = debts.iter().position(|debt| debt.frame == *frame)?;
-                Some(debts.remove(index))
-            })
+        // What was put off last of all: to ask again is what the unit wants.
+        [false, true].into_iter().find_map(|is_put_off| {
+            let is_it = |debt: &Debt| debt.frame == *frame && debt.is_put_off == is_put_off;
+            [&mut self.overdue, &mut self.awaited]
+                .into_iter()
+                .find_map(|debts| Some(debts.remove(debts.iter().position(is_it)?)))
+        })
     }
 
     fn is_settled(&self) -> bool {
@@ -121,6 +124,7 @@ impl Debts {
             unit_until,
             forget_at: unit_until + patience.at_the_most().saturating_mul(10).max(LEAST_MEMORY),
             longest_answer: patience.longest_answer,
+            is_put_off: false,
         });
     }
 
@@ -163,6 +167,18 @@ impl Debts {
             && let Some(paid) = account.pay(frame)
         {
             account.overdue.retain(|debt| debt.sent >= paid.sent);
+        }
+    }
+
+    /// The unit has put off this request: an answer is not waited for, and can come still.
+    pub(super) fn put_off(&mut self, unit: Unit, frame: &Frame) {
+        if let Some(account) = self.0.get_mut(&unit)
+            && let Some(debt) = account.pay(frame)
+        {
+            account.overdue.push(Debt {
+                is_put_off: true,
+                ..debt
+            });
         }
     }
 

@@ -38,6 +38,12 @@ impl Patience {
         self.timeout.max(self.longest_answer)
     }
 
+    /// How long an answer is remembered, for a second copy of it may come: longer than late answers
+    /// are waited for.
+    pub(super) fn of_copies(self) -> Duration {
+        self.at_the_most().saturating_mul(4)
+    }
+
     /// How long a request may take in all while the meter says that it is busy: as long as all
     /// attempts at a silent one take, and a second at least, for a meter that says so is alive.
     pub(super) fn in_all(self) -> Duration {

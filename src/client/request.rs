@@ -183,7 +183,7 @@ impl Client {
         }
         let now = self.line.now();
         let Asked { unit, frame, .. } = asked;
-        let since = now.saturating_sub(asked.patience.at_the_most());
+        let since = now.saturating_sub(asked.patience.of_copies());
         if doubtful.iter().any(|doubtful| doubtful.reply == reply) {
             // Both are answers, and they really are the same.
             self.debts.answered(*unit, frame, now);

@@ -147,7 +147,8 @@ impl Client {
     }
 
     /// Takes an answer as paid, and remembers it, for a second copy of it may follow. What a gateway
-    /// says pays nothing: the unit behind it can still answer. After an answer to a loop-back nothing
+    /// says pays nothing: the unit behind it can still answer. A unit that is at work should not, but
+    /// some do, so that is reckoned with and not waited for. After an answer to a loop-back nothing
     /// asked before comes any more: a meter answers one request after the other, and what carries
     /// its bytes keeps their order.
     pub(super) fn take(&mut self, unit: Unit, frame: &Frame, reply: &Reply) {
@@ -156,7 +157,9 @@ impl Client {
         }
         let now = self.line.now();
         self.recent.note(now, unit, frame, reply);
-        if reply.function() == FunctionCode::Diagnostics && self.knows_echo() {
+        if reply.exception().is_some_and(ExceptionCode::is_at_work) {
+            self.debts.put_off(unit, frame);
+        } else if reply.function() == FunctionCode::Diagnostics && self.knows_echo() {
             self.debts.answered_at_last(unit, frame);
         } else {
             self.debts.answered(unit, frame, now);

@@ -34,6 +34,12 @@ impl ExceptionCode {
         )
     }
 
+    /// Whether the unit says that it is at work (05, 06): what was asked may be answered all the
+    /// same.
+    pub const fn is_at_work(self) -> bool {
+        matches!(self, Self::ACKNOWLEDGE | Self::SERVER_DEVICE_BUSY)
+    }
+
     /// The standard's name, where the code has one.
     pub const fn name(self) -> Option<&'static str> {
         Some(match self {
