@@ -6,7 +6,7 @@
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 
 /// One run of the program and what is expected of it.
 #[must_use = "call run()"]
@@ -114,6 +114,13 @@ impl Program {
 /// The program under test.
 pub(crate) fn binary() -> PathBuf {
     PathBuf::from(env!("CARGO_BIN_EXE_meterpoll"))
+}
+
+/// Sends a signal, `INT` or `TERM`, to a child.
+pub(crate) fn kill(child: &Child, signal: &str) {
+    let pid = child.id().to_string();
+    let status = Command::new("kill").args(["-s", signal, &pid]).status();
+    assert!(status.expect("kill is there").success());
 }
 
 /// Replaces every time stamp with `<time>`: `2026-11-22T04:16:33.123Z` as data has it, and

@@ -4,9 +4,9 @@
 
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::process::ExitStatusExt;
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdout, Stdio};
 
-use super::program::{Program, without_times};
+use super::program::{Program, kill, without_times};
 
 /// A run, and what it has said so far. Nothing takes what it says on stderr before it ends.
 pub(crate) struct Run {
@@ -50,7 +50,7 @@ impl Run {
 
     /// Sends a signal, `INT` or `TERM`.
     pub(crate) fn signal(&self, signal: &str) {
-        send(&self.child, signal);
+        kill(&self.child, signal);
     }
 
     /// Waits for the end.
@@ -72,11 +72,4 @@ impl Run {
         let found = (end.code, without_times(&end.stdout), end.stderr);
         assert_eq!(found, (Some(code), stdout.to_owned(), stderr.to_owned()));
     }
-}
-
-/// Sends a signal to a child.
-pub(crate) fn send(child: &Child, signal: &str) {
-    let pid = child.id().to_string();
-    let status = Command::new("kill").args(["-s", signal, &pid]).status();
-    assert!(status.expect("kill is there").success());
 }

@@ -5,9 +5,9 @@
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
-use std::process::{Child, ChildStderr, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStderr, ChildStdout, Stdio};
 
-use super::program::Program;
+use super::program::{Program, kill};
 
 /// A run of `meterpoll simulate`. It is killed when dropped.
 pub(crate) struct Simulation {
@@ -95,9 +95,7 @@ impl Simulation {
 
     /// Sends a signal, `INT` or `TERM`, and waits for the end.
     pub(crate) fn stop(mut self, signal: &str) -> Ended {
-        let pid = self.child.id().to_string();
-        let status = Command::new("kill").args(["-s", signal, &pid]).status();
-        assert!(status.expect("kill is there").success());
+        kill(&self.child, signal);
         self.wait()
     }
 
