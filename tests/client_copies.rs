@@ -112,7 +112,7 @@ fn the_same_registers_of_another_unit_or_of_long_ago_are_no_copy() {
             .request(unit(number), &read(address, 1), Patience::default());
         assert!(response.is_ok());
     }
-    bench.clock.advance(ms(1000));
+    bench.clock.advance(ms(4000));
     let response = bench
         .client
         .request(unit(17), &read(2, 1), Patience::default());

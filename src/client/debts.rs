@@ -189,6 +189,13 @@ impl Debts {
         }
     }
 
+    /// How many answers to loop-backs are owed.
+    pub(super) fn loop_backs(&self, unit: Unit) -> usize {
+        let is_one = |debt: &&Debt| debt.request.function() == FunctionCode::Diagnostics;
+        let count = |account: &Account| account.all().filter(is_one).count();
+        self.0.get(&unit).map_or(0, count)
+    }
+
     /// Whether an answer to this very request is waited for.
     pub(super) fn awaits(&self, unit: Unit, frame: &Frame) -> bool {
         let awaited = |account: &Account| account.awaited.iter().any(|debt| debt.frame == *frame);

@@ -26,6 +26,9 @@
 //!   again, the time by which they come later is kept free behind every answer for a minute. The
 //!   same question asked again at once uses the other function, where there is one.
 //!
+//! A unit that says that it is busy (06), or still at work (05), has not answered: should it do so all
+//! the same, that is told like a late answer. A gateway's word (0A, 0B) is none of the unit's.
+//!
 //! The first two always, then the functions, then the loop-back: the cheapest first. For a meter of
 //! which nothing is known only waiting is left, and an answer that is later than that and as long as
 //! the next one is believed: nothing in a frame tells it from the right one.
@@ -47,9 +50,6 @@ const BUSY_WAITS: [Duration; 3] = [
     Duration::from_millis(200),
     Duration::from_millis(400),
 ];
-
-/// So many loop-backs are sent, one behind the other, to make sure.
-const MOST_BARRIERS: u32 = 4;
 
 /// The first word of a loop-back that serves as a barrier, where any word does: unlike noise.
 const FIRST_BARRIER: u16 = 0xA5C2;
@@ -259,7 +259,8 @@ impl Client {
             && self.knows_echo()
         {
             // The answer can be that to a loop-back before, and proves no more than that one then.
-            let mut barriers = 0..MOST_BARRIERS;
+            let owed = self.debts.loop_backs(wanted.unit);
+            let mut barriers = 0..=owed;
             while self.is_doubtful(wanted) {
                 if barriers.next().is_none() {
                     return Err(Failure::Ambiguous);
