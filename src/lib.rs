@@ -11,6 +11,7 @@
 //!                 → profile    what a meter is: points, scales, limits, read planning
 //!                   → transport  moves bytes and keeps the line's time
 //!                   → codec      bytes ↔ typed values, pure
+//!                   → words      plurals
 //! ```
 //!
 //! A register address is the 0-based protocol address everywhere; other notations are parsed where
@@ -36,3 +37,4 @@ pub mod profile;
 pub mod readings;
 pub mod sim;
 pub mod transport;
+pub mod words;

@@ -12,14 +12,14 @@ use std::path::{Path, PathBuf};
 use support::paths::{modules, paths};
 
 /// What each module, and each file directly in `src/`, may import from besides itself.
-const LAYERS: [(&str, &[&str]); 12] = [
+const LAYERS: [(&str, &[&str]); 13] = [
     ("codec", &[]),
     ("transport", &["codec"]),
     ("profile", &["codec", "transport"]),
-    ("client", &["codec", "transport"]),
-    ("sim", &["codec", "transport", "profile"]),
-    ("readings", &["codec", "client", "profile"]),
-    ("output", &["codec", "profile", "readings"]),
+    ("client", &["codec", "transport", "words"]),
+    ("sim", &["codec", "transport", "profile", "words"]),
+    ("readings", &["codec", "client", "profile", "words"]),
+    ("output", &["codec", "profile", "readings", "words"]),
     ("cli", &[]),
     (
         "commands",
@@ -32,8 +32,10 @@ const LAYERS: [(&str, &[&str]); 12] = [
             "readings",
             "sim",
             "transport",
+            "words",
         ],
     ),
+    ("words.rs", &[]),
     ("lib.rs", &[]),
     ("main.rs", &["commands"]),
     // It loads the built-in meters with the program's own loader.

@@ -12,6 +12,7 @@ mod support {
     pub(crate) mod program;
     pub(crate) mod pty;
     pub(crate) mod script;
+    pub(crate) mod truthful;
 }
 
 use std::thread;

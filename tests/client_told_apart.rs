@@ -1,114 +1,20 @@
 //! How a late answer is told from the right one, beside by waiting: by the other of the functions 03
-//! and 04, by a loop-back, and by a second look at what may be a copy.
+//! and 04, and by a loop-back.
 
 #[path = "support/clock.rs"]
 mod clock;
 #[path = "support/script.rs"]
 mod script;
+#[path = "support/ways.rs"]
+mod ways;
 
 use std::time::Duration;
 
 use meterpoll::client::{Failure, Patience, QueryData, Ways};
-use meterpoll::codec::rtu::{decode_request, encode_reply};
-use meterpoll::codec::{
-    ExceptionCode, ReadFunction, ReadValues, RegisterRange, Reply, Request, Response,
-};
+use meterpoll::codec::ExceptionCode;
 
-use self::script::{Bench, Chunk, read, reply, true_reply, true_response, truth, unit};
-
-const fn ms(milliseconds: u64) -> Duration {
-    Duration::from_millis(milliseconds)
-}
-
-/// Later than anybody waits: the time-out is 1 s.
-const TOO_LATE: Duration = ms(2100);
-
-const BOTH: Ways = Ways {
-    interchangeable_reads: true,
-    loopback: Some(QueryData::Any),
-};
-
-const LOOPBACK_ONLY: Ways = Ways {
-    interchangeable_reads: false,
-    ..BOTH
-};
-
-const FUNCTIONS_ONLY: Ways = Ways {
-    loopback: None,
-    ..BOTH
-};
-
-impl Bench {
-    /// Reads a register of unit 17 with one attempt. A value must be the true one.
-    fn reads(&mut self, address: u16, ways: Ways) -> Result<(), Failure> {
-        let patience = Patience {
-            retries: 0,
-            ways,
-            ..Patience::default()
-        };
-        let response = self.client.request(unit(17), &read(address, 1), patience)?;
-        let Response::Registers { values, .. } = response else {
-            panic!("{response:?}");
-        };
-        assert_eq!(values.into_vec(), [truth(17, address)]);
-        Ok(())
-    }
-
-    /// What a meter that tells the truth does with every request.
-    fn answer_after(&self, delay: Duration) {
-        self.line.meter(move |frame| vec![(delay, answer(frame))]);
-    }
-
-    /// The answer to the next request comes so late; those behind it after 200 ms.
-    fn answer_late(&self, delay: Duration) {
-        let mut delays = vec![ms(200), delay];
-        self.line.meter(move |frame| {
-            let delay = if delays.len() == 1 {
-                delays[0]
-            } else {
-                delays.pop().unwrap()
-            };
-            vec![(delay, answer(frame))]
-        });
-    }
-
-    fn be_silent(&self) {
-        self.line.meter(|_| Vec::new());
-    }
-
-    /// `03 0x0001`: function and first word of each frame sent.
-    fn asked(&self) -> Vec<String> {
-        let sent = self.line.sent();
-        let frames = sent.iter().map(|sent| sent.frame.as_slice());
-        frames
-            .map(|frame| format!("{:02} 0x{:02X}{:02X}", frame[1], frame[2], frame[3]))
-            .collect()
-    }
-
-    /// A bench whose line is known not to echo.
-    fn known() -> Self {
-        let mut bench = Self::new();
-        bench.answer_after(ms(10));
-        bench.reads(0x100, Ways::default()).expect("an answer");
-        bench
-    }
-}
-
-/// The true answer to a read, or to a loop-back.
-fn answer(frame: &[u8]) -> Vec<u8> {
-    match decode_request(frame) {
-        Ok((_, Request::ReturnQueryData(word))) => reply(unit(17), Response::QueryData(word)),
-        _ => true_reply(frame),
-    }
-}
-
-fn exception(frame: &[u8], code: ExceptionCode) -> Vec<u8> {
-    let (_, request) = decode_request(frame).expect("a request");
-    let function = request.function();
-    encode_reply(unit(17), &Reply::Exception { function, code })
-        .as_bytes()
-        .to_vec()
-}
+use self::script::{Bench, read, unit};
+use self::ways::{BOTH, FUNCTIONS_ONLY, LOOPBACK_ONLY, TOO_LATE, answer, exception, ms};
 
 #[test]
 fn an_answer_later_than_the_wait_has_the_wrong_function() {
@@ -403,114 +309,6 @@ fn a_loop_back_that_can_be_taken_for_one_before_is_sent_again() {
     );
 }
 
-/// Two answers to a request: one after `first`, a copy of it so much later.
-fn twice(frame: &[u8], first: Duration, later: Duration) -> Vec<Chunk> {
-    vec![(first, answer(frame)), (first + later, answer(frame))]
-}
-
-#[test]
-fn a_second_copy_that_comes_late_is_not_the_answer_to_the_next_register() {
-    for first in [1, 10, 40] {
-        for later in [5, 30, 50, 90, 150, 400] {
-            let mut bench = Bench::new();
-            bench
-                .line
-                .meter(move |frame| twice(frame, ms(first), ms(later)));
-            for address in 1..40 {
-                let patience = Patience::default();
-                let response = bench.client.request(unit(17), &read(address, 1), patience);
-                let expected = true_response(unit(17), address, 1);
-                assert_eq!(response.expect("an answer"), expected);
-            }
-            let counters = bench.client.counters(unit(17));
-            assert!(counters.copies > 0, "{first} {later} {counters}");
-        }
-    }
-}
-
-#[test]
-fn a_second_copy_of_a_late_answer_is_not_the_answer_to_the_next_register() {
-    for first in [1100, 1500, 1900] {
-        for later in [5, 30, 150, 400] {
-            let mut bench = Bench::new();
-            let mut is_late = true;
-            bench.line.meter(move |frame| {
-                if std::mem::take(&mut is_late) {
-                    return twice(frame, ms(first), ms(later));
-                }
-                vec![(ms(500), answer(frame))]
-            });
-            assert!(bench.reads(1, Ways::default()).is_err());
-            for address in 2..5 {
-                bench.reads(address, Ways::default()).expect("an answer");
-            }
-        }
-    }
-}
-
-#[test]
-fn registers_that_really_are_the_same_cost_one_more_request_and_no_waiting() {
-    let mut bench = Bench::new();
-    bench.line.meter(|_| {
-        let values = ReadValues::new(vec![7]).unwrap();
-        let function = ReadFunction::HoldingRegisters;
-        vec![(
-            ms(10),
-            reply(unit(17), Response::Registers { function, values }),
-        )]
-    });
-    for address in [1, 2, 1, 2] {
-        let request = Request::Read {
-            function: ReadFunction::HoldingRegisters,
-            range: RegisterRange::new(address, 1).unwrap(),
-        };
-        let response = bench
-            .client
-            .request(unit(17), &request, Patience::default());
-        assert!(response.is_ok());
-    }
-    assert_eq!(
-        bench.asked(),
-        [
-            "03 0x0001",
-            "03 0x0002",
-            "03 0x0002",
-            "03 0x0001",
-            "03 0x0001",
-            "03 0x0002",
-            "03 0x0002"
-        ]
-    );
-    assert!(bench.now() < ms(250));
-    assert_eq!(bench.client.counters(unit(17)).copies, 0);
-}
-
-#[test]
-fn the_same_registers_of_another_unit_or_of_long_ago_are_no_copy() {
-    let mut bench = Bench::new();
-    bench.line.meter(|frame| {
-        let values = ReadValues::new(vec![7]).unwrap();
-        let function = ReadFunction::HoldingRegisters;
-        let number = u16::from(frame[0]);
-        vec![(
-            ms(10),
-            reply(unit(number), Response::Registers { function, values }),
-        )]
-    });
-    for (number, address) in [(17, 1), (18, 2)] {
-        let response = bench
-            .client
-            .request(unit(number), &read(address, 1), Patience::default());
-        assert!(response.is_ok());
-    }
-    bench.clock.advance(ms(1000));
-    let response = bench
-        .client
-        .request(unit(17), &read(2, 1), Patience::default());
-    assert!(response.is_ok());
-    assert_eq!(bench.frames(), 3);
-}
-
 #[test]
 fn what_has_happened_is_counted_and_told() {
     let mut bench = Bench::new();
@@ -541,4 +339,81 @@ fn what_has_happened_is_counted_and_told() {
         bench.client.counters(unit(18)).to_string(),
         "0 requests, 0 answers"
     );
+}
+
+#[test]
+fn what_a_gateway_says_is_no_barrier() {
+    let gateway = ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND;
+    let mut bench = Bench::known();
+    let mut count = 0;
+    bench.line.meter(move |frame| {
+        count += 1;
+        match count {
+            1 => vec![(TOO_LATE, answer(frame))],
+            2 => vec![(ms(10), exception(frame, gateway))],
+            _ => vec![(ms(300), answer(frame))],
+        }
+    });
+    assert!(bench.reads(1, LOOPBACK_ONLY).is_err());
+    match bench.reads(2, LOOPBACK_ONLY) {
+        Err(Failure::Exception(code)) => assert_eq!(code, gateway),
+        other => panic!("{other:?}"),
+    }
+    bench.reads(2, LOOPBACK_ONLY).expect("an answer");
+}
+
+#[test]
+fn a_late_word_of_a_gateway_does_not_end_the_wait() {
+    let gateway = ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND;
+    let mut bench = Bench::known();
+    let mut is_first = true;
+    bench.line.meter(move |frame| {
+        if std::mem::take(&mut is_first) {
+            let refusal = exception(frame, gateway);
+            vec![(ms(1100), refusal), (ms(1500), answer(frame))]
+        } else {
+            vec![(ms(900), answer(frame))]
+        }
+    });
+    assert!(bench.reads(1, Ways::default()).is_err());
+    bench.reads(2, Ways::default()).expect("an answer");
+}
+
+#[test]
+fn late_answers_to_loop_backs_prove_no_more_than_they_can() {
+    let ways = Ways {
+        loopback: Some(QueryData::Zero),
+        ..LOOPBACK_ONLY
+    };
+    let mut bench = Bench::known();
+    // All of them come, in order, and far too late.
+    bench.answer_after(ms(4500));
+    for address in [1, 2, 1, 2, 2, 2] {
+        let _ = bench.reads(address, ways);
+    }
+}
+
+#[test]
+fn an_adapter_that_came_back_is_not_known_to_be_without_echo() {
+    let mut bench = Bench::known();
+    let mut is_first = true;
+    bench.line.meter(move |frame| {
+        if std::mem::take(&mut is_first) {
+            return vec![(ms(3500), answer(frame))];
+        }
+        // Another adapter by now: it echoes, and the meter has no loop-back.
+        let mut chunks = vec![(Duration::ZERO, frame.to_vec())];
+        if frame[1] != 8 {
+            chunks.push((ms(600), answer(frame)));
+        }
+        chunks
+    });
+    assert!(bench.reads(1, LOOPBACK_ONLY).is_err());
+    let now = bench.now();
+    bench.line.come_back(now);
+    bench.line.hang_up(now);
+    assert!(bench.reads(9, LOOPBACK_ONLY).is_err());
+    for address in [2, 3] {
+        let _ = bench.reads(address, LOOPBACK_ONLY);
+    }
 }

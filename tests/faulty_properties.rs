@@ -1,5 +1,7 @@
 //! Whatever the script: no rule text stops the program, and what no rule is for passes unchanged.
 
+#[path = "support/cases.rs"]
+mod cases;
 #[path = "support/lying.rs"]
 mod lying;
 
@@ -7,26 +9,9 @@ use meterpoll::codec::rtu::Hex;
 use meterpoll::transport::faulty::{FaultKind, FaultScript};
 use meterpoll::transport::{Timing, Transport};
 use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
+use self::cases::hold;
 use self::lying::{Lying, read, truth};
-
-/// Runs a property on the same cases every time.
-fn check<S: Strategy>(
-    cases: u32,
-    strategy: &S,
-    test: impl Fn(S::Value) -> Result<(), TestCaseError>,
-) {
-    let config = ProptestConfig {
-        cases,
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    };
-    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-    TestRunner::new_with_rng(config, rng)
-        .run(strategy, test)
-        .unwrap_or_else(|error| panic!("{error}"));
-}
 
 /// Values that some kind or key takes.
 const VALUES: [&str; 24] = [
@@ -60,11 +45,11 @@ fn valid(rules: &[String]) -> Vec<&str> {
 
 #[test]
 fn no_text_stops_the_program() {
-    check(2000, &any::<String>(), |text| {
+    hold(2000, &any::<String>(), |text| {
         let _ = FaultScript::from_text(&text);
         Ok(())
     });
-    check(2000, &any_rule(), |rule| {
+    hold(2000, &any_rule(), |rule| {
         if let Ok(script) = FaultScript::parse([&rule]) {
             prop_assert_eq!(script.rules()[0].text(), rule.trim());
         }
@@ -76,7 +61,7 @@ fn no_text_stops_the_program() {
 fn what_no_rule_is_for_passes_unchanged() {
     // Rules for the odd requests; late bytes of theirs are done with before the even ones.
     let rules = prop::collection::vec(any_rule(), 0..4);
-    check(300, &(rules, any::<u64>()), |(rules, seed)| {
+    hold(300, &(rules, any::<u64>()), |(rules, seed)| {
         let odd: Vec<_> = valid(&rules)
             .into_iter()
             .filter(|rule| !rule.contains(",on="))
@@ -102,7 +87,7 @@ fn what_no_rule_is_for_passes_unchanged() {
 #[test]
 fn however_it_is_listened_to_the_bytes_are_the_same() {
     let strategy = (any_rule(), any::<u64>(), 1..40_usize);
-    check(300, &strategy, |(rule, seed, room)| {
+    hold(300, &strategy, |(rule, seed, room)| {
         let Ok(script) = FaultScript::parse([&rule]) else {
             return Ok(());
         };

@@ -1,29 +1,22 @@
 //! What the fuzzer (`tests/fuzz`) tries on the bytes it finds, tried here on random ones.
 
 mod support {
+    pub(crate) mod cases;
     pub(crate) mod fuzz;
 }
 
 use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
+use support::cases::hold;
 use support::fuzz::{chunks, codec, profile, reply, session};
 
 /// Runs a property on the same bytes every time, up to so many.
 fn check(cases: u32, most: usize, property: fn(&[u8])) {
-    let config = ProptestConfig {
-        cases,
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    };
-    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
     let bytes = prop::collection::vec(any::<u8>(), 0..most);
-    TestRunner::new_with_rng(config, rng)
-        .run(&bytes, |bytes| {
-            property(&bytes);
-            Ok(())
-        })
-        .unwrap_or_else(|error| panic!("{error}"));
+    hold(cases, &bytes, |bytes| {
+        property(&bytes);
+        Ok(())
+    });
 }
 
 #[test]

@@ -5,17 +5,15 @@
 mod support {
     pub(crate) mod program;
     pub(crate) mod pty;
+    pub(crate) mod run;
     pub(crate) mod tried;
 }
 
-use std::io::{BufRead, BufReader, Read};
-use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use support::program::Program;
 use support::pty::{self, PtyMeter};
+use support::run::Run;
 use support::tried::{check, run};
 
 /// What is said where answers get through beside noise.
@@ -280,21 +278,12 @@ fn a_signal_ends_it_with_the_summary() {
     for (format, signal, number) in [("table", "INT", 2), ("json", "TERM", 15)] {
         let meter = meter(|request| healthy(17, request));
         let arguments = format!("loopback -p {} -a 17 --forever -t 20s", meter.path());
-        let mut child = Program::new(&format!("{arguments} --interval 1ms -f {format}"))
-            .command()
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("the program starts");
-        let mut out = BufReader::new(child.stdout.take().expect("it is piped"));
-        let mut text = String::new();
-        for _ in 0..5 {
-            out.read_line(&mut text).expect("a line");
-        }
-        let pid = child.id().to_string();
-        let kill = Command::new("kill").args(["-s", signal, &pid]).status();
-        assert!(kill.expect("kill is there").success());
-        out.read_to_string(&mut text).expect("the rest");
-        assert_eq!(child.wait().expect("it ends").signal(), Some(number));
+        let mut run = Run::start(&format!("{arguments} --interval 1ms -f {format}"));
+        run.wait_for_lines(5);
+        run.signal(signal);
+        let end = run.end();
+        assert_eq!(end.signal, Some(number));
+        let text = end.stdout;
         if format == "json" {
             let object: serde_json::Value = serde_json::from_str(&text).expect("JSON");
             assert_eq!(object["count"], serde_json::Value::Null);
@@ -311,21 +300,14 @@ fn a_signal_ends_it_with_the_summary() {
 #[test]
 fn a_signal_ends_an_interval() {
     let arguments = "loopback -p sim: -a 17 --forever --interval 20h --meter pqm -f csv";
-    let mut child = Program::new(arguments)
-        .command()
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    let mut lines = BufReader::new(child.stdout.take().expect("it is piped")).lines();
-    assert!(lines.nth(1).is_some(), "header and row are out");
-    let pid = child.id().to_string();
-    let kill = Command::new("kill").args(["-s", "INT", &pid]).status();
-    assert!(kill.expect("kill is there").success());
-    let output = child.wait_with_output().expect("it ends");
-    assert_eq!(output.status.signal(), Some(2));
-    let stderr = String::from_utf8(output.stderr).expect("text");
-    assert!(stderr.ends_with("the line is good: 1 of 1 answered, no damage, no noise\n"));
+    let mut run = Run::start(arguments);
+    // The header and a row.
+    run.wait_for_lines(2);
+    run.signal("INT");
+    let end = run.end();
+    assert_eq!(end.signal, Some(2));
+    let verdict = "the line is good: 1 of 1 answered, no damage, no noise\n";
+    assert!(end.stderr.ends_with(verdict), "{}", end.stderr);
 }
 
 #[test]

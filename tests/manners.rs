@@ -6,6 +6,8 @@
 mod support {
     pub(crate) mod program;
     pub(crate) mod pty;
+    pub(crate) mod run;
+    pub(crate) mod waiting;
 }
 
 use std::fs::{self, OpenOptions};
@@ -14,6 +16,8 @@ use std::time::Duration;
 
 use support::program::{Program, without_times};
 use support::pty::{self, PtyMeter};
+use support::run::Run;
+use support::waiting::wait_until;
 
 const HEADER: &str = "time,meter,unit_id,status,0x0005\n";
 
@@ -256,10 +260,6 @@ fn named_points_are_read_as_the_meter_wants_whatever_function_is_typed() {
 
 #[test]
 fn a_signal_lets_the_row_in_hand_be_finished_and_a_second_one_does_not() {
-    use std::os::unix::process::ExitStatusExt;
-    use std::process::{Command, Stdio};
-    use std::time::Instant;
-
     /// Longer than any test machine takes to start the program and to deliver a signal.
     const ANSWER: Duration = Duration::from_millis(1500);
 
@@ -270,28 +270,16 @@ fn a_signal_lets_the_row_in_hand_be_finished_and_a_second_one_does_not() {
                 pty::answer(u16::from(request[0]), request).unwrap_or_default()
             }));
             let arguments = format!("read-registers -p {} -a 1-9 5 -f csv -t 20s", meter.path());
-            let mut child = Program::new(&arguments)
-                .command()
-                .stdout(Stdio::piped())
-                .spawn()
-                .expect("the program starts");
-            let start = Instant::now();
-            while meter.requests().is_empty() && start.elapsed() < Duration::from_secs(20) {
-                std::thread::yield_now();
-            }
-            let pid = child.id().to_string();
-            let kill = || {
-                let status = Command::new("kill").args(["-s", signal, &pid]).status();
-                assert!(status.expect("kill is there").success());
-            };
-            kill();
+            let mut run = Run::start(&arguments);
+            wait_until(|| !meter.requests().is_empty());
+            run.signal(signal);
             // Two that come at once are one to the system.
-            while is_second && child.try_wait().expect("a child").is_none() {
-                kill();
+            while is_second && run.child.try_wait().expect("a child").is_none() {
+                run.signal(signal);
             }
-            let output = child.wait_with_output().expect("it ends");
-            assert_eq!(output.status.signal(), Some(number));
-            let stdout = without_times(&String::from_utf8(output.stdout).expect("CSV is text"));
+            let end = run.end();
+            assert_eq!((end.signal, end.stderr.as_str()), (Some(number), ""));
+            let stdout = without_times(&end.stdout);
             let row = format!("{HEADER}<time>,,1,ok,38\n");
             assert_eq!(stdout, if is_second { String::new() } else { row });
         }
@@ -300,24 +288,13 @@ fn a_signal_lets_the_row_in_hand_be_finished_and_a_second_one_does_not() {
 
 #[test]
 fn a_signal_while_a_late_answer_is_waited_for_is_told_in_the_end() {
-    use std::io::{BufRead, BufReader};
-    use std::os::unix::process::ExitStatusExt;
-    use std::process::{Command, Stdio};
-
     let meter = PtyMeter::new(Box::new(|_| Vec::new()));
     let arguments = format!("read-registers -p {} -a 1 5 -f csv -q", meter.path());
-    let mut child = Program::new(&format!("{arguments} -t 200ms --retries 0"))
-        .command()
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("the program starts");
-    let mut lines = BufReader::new(child.stdout.take().expect("it is piped")).lines();
-    assert!(lines.nth(1).is_some(), "header and row are out");
-    let pid = child.id().to_string();
-    let kill = Command::new("kill").args(["-s", "INT", &pid]).status();
-    assert!(kill.expect("kill is there").success());
-    assert_eq!(child.wait().expect("it ends").signal(), Some(2));
+    let mut run = Run::start(&format!("{arguments} -t 200ms --retries 0"));
+    // The header and the row.
+    run.wait_for_lines(2);
+    run.signal("INT");
+    assert_eq!(run.end().signal, Some(2));
 }
 
 #[test]

@@ -34,7 +34,8 @@ points = [
 fn file(name: &str, text: &str) -> PathBuf {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("check-{count}"));
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join(format!("check-{}-{count}", std::process::id()));
     fs::create_dir_all(&folder).expect("the folder for tests is writable");
     let path = folder.join(name);
     fs::write(&path, text).expect("the folder for tests is writable");

@@ -6,6 +6,7 @@
 mod support {
     pub(crate) mod program;
     pub(crate) mod pty;
+    pub(crate) mod waiting;
 }
 
 use std::fs::{self, OpenOptions, Permissions};
@@ -24,9 +25,7 @@ use rustix::termios::ioctl_tiocnxcl;
 
 use support::program::Program;
 use support::pty::{self, PtyMeter};
-
-/// Longer than anything here takes on any machine.
-const LONG: Duration = Duration::from_secs(60);
+use support::waiting::wait_until;
 
 /// A process that is being started has for a moment everything open that the test has, so one test
 /// at a time looks for who has a port open.
@@ -88,15 +87,6 @@ fn start(program: &Program, meter: &PtyMeter) -> Running {
     let child = Running(Some(child));
     wait_until(|| meter.requests().len() > asked);
     child
-}
-
-#[track_caller]
-fn wait_until(mut is_so: impl FnMut() -> bool) {
-    let start = Instant::now();
-    while !is_so() {
-        assert!(start.elapsed() < LONG, "it does not come to that");
-        std::thread::yield_now();
-    }
 }
 
 /// A process that is killed when the test ends, however it ends: it has the meter's line open.

@@ -1,6 +1,9 @@
 //! The read plan is never illegal and never dearer than the best of all plans: beside every way of
 //! grouping the points there is, under all rules together.
 
+#[path = "support/cases.rs"]
+mod cases;
+
 use std::time::Duration;
 
 use meterpoll::codec::value::{ByteOrder, RegisterType};
@@ -10,7 +13,8 @@ use meterpoll::profile::point::Access;
 use meterpoll::profile::{Limits, Point, Profile};
 use meterpoll::transport::{LineSettings, Parity};
 use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
+
+use self::cases::runner;
 
 const HOLDING: ReadFunction = ReadFunction::HoldingRegisters;
 const INPUT: ReadFunction = ReadFunction::InputRegisters;
@@ -312,13 +316,7 @@ fn any_case() -> impl Strategy<Value = Case> {
 
 #[test]
 fn no_way_of_grouping_the_points_is_cheaper_than_the_plan() {
-    let config = ProptestConfig {
-        cases: 2000,
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    };
-    let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
-    TestRunner::new_with_rng(config, rng)
+    runner(2000)
         .run(&any_case(), |case| {
             let plan = Plan::new(&case.asked, HOLDING, &case.rules(), case.cost());
             let mut planned: Vec<usize> = Vec::new();

@@ -3,6 +3,7 @@
 //! point alone.
 
 mod support {
+    pub(crate) mod cases;
     pub(crate) mod clock;
     pub(crate) mod fussy;
     pub(crate) mod script;
@@ -12,8 +13,8 @@ use std::time::Duration;
 
 use meterpoll::profile::{Limits, Point};
 use proptest::prelude::*;
-use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
+use support::cases::runner;
 use support::fussy::{Fussy, Run, point, statuses};
 
 fn any_points() -> impl Strategy<Value = Vec<Point>> {
@@ -43,18 +44,9 @@ fn any_meter() -> impl Strategy<Value = Fussy> {
     )
 }
 
-fn run_of(cases: u32) -> TestRunner {
-    let config = ProptestConfig {
-        cases,
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    };
-    TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha))
-}
-
 #[test]
 fn what_the_meter_gives_by_itself_arrives_whatever_it_refuses_beside_it() {
-    run_of(1200)
+    runner(1200)
         .run(
             &(any_meter(), any_points(), any::<bool>(), 4_u16..=125),
             |(mut meter, points, read_holes, read_registers)| {
@@ -120,7 +112,7 @@ fn any_fault() -> impl Strategy<Value = Fault> {
 #[test]
 fn no_value_is_ever_wrong_on_a_bad_line() {
     let faults = prop::collection::vec(any_fault(), 1..40);
-    run_of(600)
+    runner(600)
         .run(
             &(any_meter(), any_points(), any::<bool>(), faults),
             |(meter, points, read_holes, faults)| {

@@ -23,7 +23,7 @@ struct Answer {
 /// How long after an answer its second copy comes.
 #[derive(Clone, Copy)]
 struct Delay {
-    delay: Duration,
+    time: Duration,
     /// When that was last seen.
     at: Duration,
     /// Seen once, it can be a coincidence: registers that were the same, and moved.
@@ -85,7 +85,7 @@ impl Recent {
         self.delays.insert(
             unit,
             Delay {
-                delay: known.map_or(delay, |known| known.delay.max(delay)),
+                time: known.map_or(delay, |known| known.time.max(delay)),
                 at: now,
                 is_sure: known.is_some(),
             },
@@ -95,7 +95,7 @@ impl Recent {
     /// How long after an answer of the unit its second copy comes, on a line that makes them.
     pub(super) fn delay(&self, unit: Unit, now: Duration) -> Option<Duration> {
         let known = self.known_delay(unit, now).filter(|known| known.is_sure);
-        known.map(|known| known.delay)
+        known.map(|known| known.time)
     }
 
     fn known_delay(&self, unit: Unit, now: Duration) -> Option<Delay> {

@@ -13,6 +13,7 @@ use jiff::Timestamp;
 use crate::codec::Unit;
 use crate::readings::Fault;
 use crate::readings::loopback::{LineEcho, Summary, Try};
+use crate::words::counted;
 
 /// The unit under test.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +67,8 @@ pub fn lines(summary: &Summary) -> Vec<String> {
         noticed,
         echo,
     } = summary;
-    let mut counts = format!("{}, {answered} answered", tries_of(*tries));
+    let mut counts = counted(*tries, "try", "tries");
+    counts = format!("{counts}, {answered} answered");
     if failed.refused > 0 {
         counts = format!("{counts}, {} refused", failed.refused);
     }
@@ -97,13 +99,6 @@ pub fn lines(summary: &Summary) -> Vec<String> {
     ));
     lines.push(summary.to_string());
     lines
-}
-
-fn tries_of(count: u64) -> String {
-    match count {
-        1 => "1 try".to_owned(),
-        _ => format!("{count} tries"),
-    }
 }
 
 /// With one decimal; 0.0 is none, and 100.0 is all.

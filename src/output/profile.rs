@@ -15,6 +15,7 @@ use legend::Legend;
 
 use super::escape;
 use crate::profile::{Point, Profile};
+use crate::words::counted;
 
 /// A meter and those of its points that are shown.
 #[derive(Debug, Clone, Copy)]
@@ -85,10 +86,7 @@ impl Shown<'_> {
 
 /// How many points there are, and how many of them are not verified.
 pub fn count(points: &[Point]) -> String {
-    let all = match points.len() {
-        1 => "1 point".to_owned(),
-        count => format!("{count} points"),
-    };
+    let all = counted(points.len(), "point", "points");
     match points.iter().filter(|point| !point.verified).count() {
         0 => format!("{all}, all verified"),
         unverified => format!("{all}, {unverified} not verified"),

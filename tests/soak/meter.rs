@@ -9,7 +9,6 @@
 //! tell; what is left is the time between its look at the clock and the client's port. Only stalls are
 //! longer, and only lines have them where the client can tell answers apart however late they are.
 
-use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::sync::Arc;
@@ -20,13 +19,12 @@ use std::time::Duration;
 use fastrand::Rng;
 use meterpoll::codec::length::{self, Direction};
 use meterpoll::transport::faulty::{FaultCounts, FaultTally};
-use meterpoll::transport::{
-    Clock, FaultScript, Faulty, OpenError, Timing, Transport, TransportError,
-};
+use meterpoll::transport::{Clock, FaultScript, Faulty, Timing, Transport};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::pty;
 use crate::truth::Registers;
+use crate::truthful::Truthful;
 use crate::wire::{What, Wire};
 
 /// How long after it was sent a request may be taken.
@@ -80,10 +78,9 @@ pub(crate) struct RunningMeter {
 impl RunningMeter {
     pub(crate) fn start(nature: Nature, wire: &Arc<Wire>, clock: &Arc<dyn Clock>) -> Self {
         let (master, slave, path) = pty::pair().expect("a pty pair");
-        let truth = Truth {
-            registers: nature.registers,
-            answers: VecDeque::new(),
-        };
+        let registers = nature.registers;
+        let answer: Answer = Box::new(move |frame| registers.answer(frame).unwrap_or_default());
+        let truth = Truthful::new(answer);
         let script = nature.script.with_seed(nature.seed);
         let faulty = Faulty::new(truth, script, Timing::Unpaced, Arc::clone(clock));
         let mishaps = Arc::new(Mishaps::default());
@@ -130,40 +127,12 @@ impl Drop for RunningMeter {
     }
 }
 
-/// Answers truly and at once.
-struct Truth {
-    registers: Registers,
-    answers: VecDeque<u8>,
-}
-
-impl Transport for Truth {
-    fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
-        self.answers
-            .extend(self.registers.answer(frame).into_iter().flatten());
-        Ok(())
-    }
-
-    fn receive(&mut self, into: &mut [u8], _: Duration) -> Result<usize, TransportError> {
-        let count = self.answers.len().min(into.len());
-        for (place, byte) in into.iter_mut().zip(self.answers.drain(..count)) {
-            *place = byte;
-        }
-        Ok(count)
-    }
-
-    fn discard_input(&mut self) -> Result<(), TransportError> {
-        self.answers.clear();
-        Ok(())
-    }
-
-    fn reopen(&mut self) -> Result<(), OpenError> {
-        Ok(())
-    }
-}
+/// What it would answer.
+type Answer = Box<dyn FnMut(&[u8]) -> Vec<u8> + Send>;
 
 struct Meter {
     master: File,
-    faulty: Faulty<Truth>,
+    faulty: Faulty<Truthful<Answer>>,
     registers: Registers,
     stalls: Option<Stalls>,
     /// When the last stall ends, or has ended.

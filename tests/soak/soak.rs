@@ -57,6 +57,9 @@ mod wire;
 #[cfg(unix)]
 #[path = "../support/pty.rs"]
 mod pty;
+#[cfg(unix)]
+#[path = "../support/truthful.rs"]
+mod truthful;
 
 #[cfg(unix)]
 fn main() -> std::process::ExitCode {

@@ -1,7 +1,6 @@
 //! A meter that tells the truth at the other end of a pty whose line lies about it, by rules as
 //! users type them after `--fault`.
 
-use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
@@ -12,12 +11,12 @@ use std::time::Duration;
 
 use meterpoll::codec::length::{Direction, of_frame};
 use meterpoll::transport::{
-    Clock, FaultScript, Faulty, LineSettings, OpenError, SystemClock, Timing, Transport,
-    TransportError,
+    Clock, FaultScript, Faulty, LineSettings, SystemClock, Timing, Transport,
 };
 
 use super::pty::pair;
 use super::script::true_reply;
+use super::truthful::Truthful;
 
 /// The meter. It ends when dropped.
 pub(crate) struct LyingMeter {
@@ -41,7 +40,12 @@ impl LyingMeter {
         let clock: Arc<dyn Clock> = Arc::new(SystemClock::new());
         let timing = Timing::Paced(LineSettings::default());
         let script = FaultScript::parse(rules).expect("rules");
-        let line = Faulty::new(Truthful::default(), script, timing, Arc::clone(&clock));
+        let line = Faulty::new(
+            Truthful::new(true_reply),
+            script,
+            timing,
+            Arc::clone(&clock),
+        );
         let mut reader = master.try_clone().expect("one more descriptor");
         let (came, bytes) = channel();
         let reading = std::thread::spawn(move || {
@@ -86,7 +90,7 @@ impl Drop for LyingMeter {
 
 /// Gives requests to the line, and what comes through it back when it is due.
 fn serve(
-    mut line: Faulty<Truthful>,
+    mut line: Faulty<impl Transport>,
     clock: &dyn Clock,
     bytes: &Receiver<Vec<u8>>,
     mut master: File,
@@ -120,34 +124,5 @@ fn serve(
                 return;
             }
         }
-    }
-}
-
-/// Answers every read at once.
-#[derive(Default)]
-struct Truthful(VecDeque<u8>);
-
-impl Transport for Truthful {
-    fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
-        self.0.extend(true_reply(frame));
-        Ok(())
-    }
-
-    fn receive(&mut self, into: &mut [u8], _: Duration) -> Result<usize, TransportError> {
-        let count = self.0.len().min(into.len());
-        for (place, byte) in into.iter_mut().zip(self.0.drain(..count)) {
-            *place = byte;
-        }
-        Ok(count)
-    }
-
-    fn discard_input(&mut self) -> Result<(), TransportError> {
-        self.0.clear();
-        Ok(())
-    }
-
-    fn reopen(&mut self) -> Result<(), OpenError> {
-        self.0.clear();
-        Ok(())
     }
 }

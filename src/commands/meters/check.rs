@@ -10,6 +10,7 @@ use crate::output::escape;
 use crate::output::profile::count;
 use crate::profile::advice::advise;
 use crate::profile::find::{self, FindError};
+use crate::words::counted;
 
 /// Checks every file, whatever is wrong with the others.
 pub(super) fn run(arguments: &CheckMeters, report: &mut Report) -> Result<ExitCode, CommandError> {
@@ -31,8 +32,7 @@ fn check(file: &Path, is_quiet: bool) -> Result<String, FindError> {
     if !is_quiet {
         let groups = match profile.groups.len() {
             0 => "no groups".to_owned(),
-            1 => "1 group".to_owned(),
-            count => format!("{count} groups"),
+            count => counted(count, "group", "groups"),
         };
         let title = escape(&profile.title);
         let points = count(&profile.points);

@@ -10,6 +10,7 @@ use crate::output::escape;
 use crate::profile::identity::Identity;
 use crate::profile::model::{Identification, Limits};
 use crate::profile::{LoopbackData, Profile};
+use crate::words::counted;
 
 /// Name and title, and what there is to say about the meter as a whole.
 pub(super) fn head(profile: &Profile) -> String {
@@ -110,8 +111,5 @@ fn named(function: FunctionCode) -> String {
 }
 
 fn registers(count: u16) -> String {
-    match count {
-        1 => "1 register".to_owned(),
-        _ => format!("{count} registers"),
-    }
+    counted(count, "register", "registers")
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::{LineEcho, Noticed, Summary};
+use crate::words::counted;
 
 /// A line that loses more tries than so many of a hundred is bad. A read that is tried three times,
 /// as reads are, then still fails about once in eight thousand times.
@@ -73,7 +74,7 @@ impl Summary {
         let Self {
             failed, noticed, ..
         } = self;
-        let counted = [
+        let found = [
             (failed.refused, "refusal", "refusals"),
             (failed.damaged, "damaged answer", "damaged answers"),
             (failed.truncated, "answer broken off", "answers broken off"),
@@ -86,13 +87,10 @@ impl Summary {
                 "frames of other units",
             ),
         ];
-        let mut faults: Vec<String> = counted
+        let mut faults: Vec<String> = found
             .into_iter()
-            .filter_map(|(count, one, many)| match count {
-                0 => None,
-                1 => Some(format!("1 {one}")),
-                _ => Some(format!("{count} {many}")),
-            })
+            .filter(|(count, ..)| *count > 0)
+            .map(|(count, one, many)| counted(count, one, many))
             .collect();
         if self.answered > 0 && self.echo == LineEcho::Unknown {
             faults.push("and what came back may be our echo".to_owned());

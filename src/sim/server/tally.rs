@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::words::frames;
 use crate::codec::{ExceptionCode, FunctionCode, Reply, rtu};
+use crate::words::counted;
 
 /// Counts of what was heard and said.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -83,20 +84,19 @@ impl Tally {
 impl fmt::Display for Tally {
     /// `3 requests (function 03: 2, 04: 1), 2 answers, 1 exception (02: 1)`, and what else there was.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        count(f, self.requests(), "request", "requests")?;
+        f.write_str(&counted(self.requests(), "request", "requests"))?;
         if !self.requests.is_empty() {
             let functions = self.requests.iter();
             let functions = functions.map(|(function, count)| format!("{function:02X}: {count}"));
             write!(f, " (function {})", listed(functions))?;
         }
-        f.write_str(", ")?;
-        count(f, self.answers, "answer", "answers")?;
+        write!(f, ", {}", counted(self.answers, "answer", "answers"))?;
         if !self.exceptions.is_empty() {
-            f.write_str(", ")?;
-            count(f, self.exceptions.values().sum(), "exception", "exceptions")?;
+            let count: u64 = self.exceptions.values().sum();
             let codes = self.exceptions.iter();
             let codes = codes.map(|(code, count)| format!("{:02X}: {count}", code.0));
-            write!(f, " ({})", listed(codes))?;
+            let exceptions = counted(count, "exception", "exceptions");
+            write!(f, ", {exceptions} ({})", listed(codes))?;
         }
         for (number, what) in [
             (self.spoiled, "spoiled"),
@@ -110,10 +110,6 @@ impl fmt::Display for Tally {
         }
         Ok(())
     }
-}
-
-fn count(f: &mut fmt::Formatter<'_>, number: u64, one: &str, many: &str) -> fmt::Result {
-    write!(f, "{number} {}", if number == 1 { one } else { many })
 }
 
 fn listed(items: impl Iterator<Item = String>) -> String {

@@ -3,6 +3,7 @@
 use crate::codec::length::{Direction, of_frame};
 use crate::codec::rtu::{self, Destination, Hex};
 use crate::codec::{Reply, Request, Response, Write};
+use crate::words::counted;
 
 /// What a request asks: `unit 17, function 03 (Read Holding Registers) 0x0240+1`.
 pub(super) fn request(frame: &[u8]) -> String {
@@ -49,10 +50,8 @@ fn one_answer(frame: &[u8]) -> String {
         Reply::Exception { function, code } => format!("unit {unit}, {code} to {function}"),
         Reply::Normal(Response::Registers { values, .. }) => {
             let values = values.into_vec();
-            match values.len() {
-                1 => format!("unit {unit}, 1 register: {}", words(&values)),
-                count => format!("unit {unit}, {count} registers: {}", words(&values)),
-            }
+            let registers = counted(values.len(), "register", "registers");
+            format!("unit {unit}, {registers}: {}", words(&values))
         }
         Reply::Normal(Response::ExceptionStatus(bits)) => format!("unit {unit}, status {bits:08b}"),
         Reply::Normal(response) => format!("unit {unit}, {} done", response.function()),
