@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use meterpoll::client::{Echo, Failure, Patience};
 use meterpoll::codec::Response;
+use meterpoll::codec::rtu::encode_request;
 use meterpoll::transport::{LineSettings, Parity};
 use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
@@ -283,6 +284,24 @@ fn noise_that_starts_with_the_request_and_never_ends_fails_when_the_time_is_up()
     let transfer = Duration::from_nanos(11_458_333) + ms(32);
     assert!(bench.now() >= SILENCE + REQUEST + T);
     assert!(bench.now() <= SILENCE + REQUEST + T + transfer);
+}
+
+#[test]
+fn noise_that_is_let_go_is_counted_once() {
+    let mut bench = Bench::new();
+    // Many echoes, so that there is more than is kept with three bytes of noise before them.
+    bench.line.answer(vec![(
+        ms(10),
+        [&[0x00; 3], &asked().repeat(10)[..]].concat(),
+    )]);
+    let failure = bench.read_after(Duration::ZERO, 0);
+    assert!(matches!(failure, Err(Failure::OnlyEcho)), "{failure:?}");
+    assert_eq!(bench.client.counters(unit(17)).stray, 3);
+}
+
+/// The frame of the read in these tests.
+fn asked() -> Vec<u8> {
+    encode_request(unit(17), &read(0x6B, 3)).as_bytes().to_vec()
 }
 
 #[test]

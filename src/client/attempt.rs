@@ -187,6 +187,7 @@ impl Client {
                     .useless(&heard.received);
                 heard.received.drain(..useless);
                 heard.forgotten += useless;
+                heard.evidence.stray = heard.evidence.stray.saturating_sub(useless);
             }
             heard.forgotten += forget_oldest(&mut heard.received);
             self.learn_echo(asked, &heard.evidence, false);
