@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::failure::Failure;
 use crate::codec::Unit;
+use crate::words::counted;
 
 /// What has been counted of one unit. Noise and frames of others belong to nobody: they count for
 /// the unit that was being asked.
@@ -55,10 +56,6 @@ impl Counters {
 /// `12 requests, 11 answers, 1 retry`: what there was of the rest.
 impl fmt::Display for Counters {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let counted = |count: u64, one: &str, many: &str| match count {
-            1 => format!("1 {one}"),
-            _ => format!("{count} {many}"),
-        };
         f.write_str(&counted(self.requests, "request", "requests"))?;
         write!(f, ", {}", counted(self.answers, "answer", "answers"))?;
         for (count, one, many) in [

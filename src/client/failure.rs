@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use crate::codec::ExceptionCode;
 use crate::transport::TransportError;
+use crate::words::counted;
 
 /// A request that was not answered as it should be, after all its attempts.
 #[derive(Debug, Error)]
@@ -90,19 +91,14 @@ impl Failure {
 fn noticed(others: usize, stray: usize) -> String {
     let mut heard = Vec::new();
     if others > 0 {
-        heard.push(format!("{} of other units", counted(others, "frame")));
+        let frames = counted(others as u64, "frame", "frames");
+        heard.push(format!("{frames} of other units"));
     }
     if stray > 0 {
-        heard.push(counted(stray, "stray byte"));
+        heard.push(counted(stray as u64, "stray byte", "stray bytes"));
     }
     if heard.is_empty() {
         return String::new();
     }
     format!(", only {}", heard.join(" and "))
-}
-
-/// `1 frame`, `2 frames`.
-fn counted(count: usize, what: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {what}{plural}")
 }
