@@ -10,8 +10,14 @@ mod support {
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
+#[cfg(target_os = "linux")]
+use std::os::unix::process::ExitStatusExt;
+#[cfg(target_os = "linux")]
+use std::process::Command;
 use std::process::Stdio;
 
+#[cfg(target_os = "linux")]
+use support::program::binary;
 use support::program::Program;
 use support::pty::pair;
 use support::simulation::{Ended, Simulation, free_path};
@@ -70,4 +76,59 @@ fn a_port_that_is_lost_before_anything_was_asked_is_followed_by_no_counts() {
     let expected = format!("error: port {path} was lost\n");
     assert!(end.stderr.starts_with(&expected), "{}", end.stderr);
     assert!(!end.stderr.contains("0 requests"), "{}", end.stderr);
+}
+
+/// Whether whoever runs the tests wants what it starts to outlive a closed window.
+fn hang_ups_are_ignored_here() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    ignored.is_some_and(|mask| mask.ends_with(['1', '3', '5', '7', '9', 'b', 'd', 'f']))
+}
+
+#[test]
+fn a_closed_window_ends_it_as_a_key_does() {
+    if hang_ups_are_ignored_here() {
+        return;
+    }
+    let path = free_path("closed-meter");
+    let arguments = format!("--port {}", path.display());
+    for _ in 0..2 {
+        let simulation = Simulation::new(&arguments);
+        assert_eq!(
+            simulation.stop("HUP"),
+            Ended::by(1, "0 requests, 0 answers\n")
+        );
+        assert!(path.symlink_metadata().is_err());
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_is_to_outlive_its_window_does() {
+    let mut child = Command::new("/bin/sh")
+        .args(["-c", "trap '' HUP; exec \"$0\" simulate --meter pqm"])
+        .arg(binary())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut first = String::new();
+    let mut stdout = BufReader::new(child.stdout.take().unwrap());
+    stdout.read_line(&mut first).unwrap();
+    let send = |signal: &str| {
+        let pid = child.id().to_string();
+        let status = Command::new("kill").args(["-s", signal, &pid]).status();
+        assert!(status.unwrap().success());
+    };
+    send("HUP");
+    let reading = format!("read-registers -p {} -a 17 --meter pqm", first.trim_end());
+    let reading = Program::new(&format!("{reading} product_code -b 115200 -q"));
+    assert_eq!(reading.output().status.code(), Some(0));
+    send("TERM");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.signal(), Some(15));
+    assert_eq!(
+        String::from_utf8(output.stderr).unwrap(),
+        "1 request (function 03: 1), 1 answer\n"
+    );
 }
