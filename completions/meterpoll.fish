@@ -91,7 +91,7 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l echo -d
 on\t'The line echoes'
 off\t'The line does not echo'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l forever -d 'Go on until stopped; SIGINT and SIGTERM let the summary be printed'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l forever -d 'Go on until stopped; SIGINT, SIGTERM and SIGHUP let the summary be printed'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l dry-run -d 'Print the requests in hex and send nothing'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'

@@ -12,6 +12,7 @@ mod support {
 
 use std::fs::{self, OpenOptions};
 use std::path::PathBuf;
+use std::process::Command;
 use std::time::Duration;
 
 use support::program::{Program, without_times};
@@ -284,6 +285,34 @@ fn a_signal_lets_the_row_in_hand_be_finished_and_a_second_one_does_not() {
             assert_eq!(stdout, if is_second { String::new() } else { row });
         }
     }
+}
+
+/// Whether whoever runs the tests wants what it starts to outlive a closed window.
+fn hang_ups_are_ignored_here() -> bool {
+    let mut shell = Command::new("/bin/sh");
+    let status = shell.args(["-c", "kill -s HUP $$"]).status();
+    status.expect("a shell").success()
+}
+
+#[test]
+fn a_closed_window_lets_the_row_in_hand_be_finished_however_often_it_is_told() {
+    if hang_ups_are_ignored_here() {
+        return;
+    }
+    let meter = PtyMeter::new(Box::new(|request| {
+        std::thread::sleep(Duration::from_millis(1500));
+        pty::answer(u16::from(request[0]), request).unwrap_or_default()
+    }));
+    let arguments = format!("read-registers -p {} -a 1-9 5 -f csv -t 20s", meter.path());
+    let mut run = Run::start(&arguments);
+    wait_until(|| !meter.requests().is_empty());
+    while run.child.try_wait().expect("a child").is_none() {
+        run.signal("HUP");
+    }
+    let end = run.end();
+    assert_eq!((end.signal, end.stderr.as_str()), (Some(1), ""));
+    let row = format!("{HEADER}<time>,,1,ok,38\n");
+    assert_eq!(without_times(&end.stdout), row);
 }
 
 #[test]

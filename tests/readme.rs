@@ -242,10 +242,11 @@ fn every_exit_code_is_in_its_table() {
         ExitCode::Refused,
         ExitCode::WriteUnknown,
         ExitCode::Output,
+        ExitCode::HungUp,
         ExitCode::Interrupted,
         ExitCode::Terminated,
     ];
     let told = meterpoll::cli::EXIT_CODES.map(|(code, _)| code);
     assert_eq!(ends.map(|end| end as u8), told);
-    assert_eq!(told, [0, 1, 2, 3, 4, 5, 6, 7, 130, 143]);
+    assert_eq!(told, [0, 1, 2, 3, 4, 5, 6, 7, 129, 130, 143]);
 }

@@ -29,7 +29,7 @@ pub struct Loopback {
     /// How many words each unit gets, one try each; at most 1000000
     #[arg(long, value_name = "COUNT", default_value_t = 20, value_parser = value_parser!(u64).range(1..=1_000_000))]
     pub count: u64,
-    /// Go on until stopped; SIGINT and SIGTERM let the summary be printed
+    /// Go on until stopped; SIGINT, SIGTERM and SIGHUP let the summary be printed
     #[arg(long, conflicts_with = "count")]
     pub forever: bool,
     /// Least time from the start of one try to the start of the next, such as 100ms; with 0s as fast

@@ -37,7 +37,7 @@ pub use usage::{Usage, completion_script, parse};
 pub use values::{MeterUnits, Units};
 
 /// What the program ends with, code by code.
-pub const EXIT_CODES: [(u8, &str); 10] = [
+pub const EXIT_CODES: [(u8, &str); 11] = [
     (0, "everything asked for was done"),
     (
         1,
@@ -52,6 +52,7 @@ pub const EXIT_CODES: [(u8, &str); 10] = [
     (5, "the meter refused"),
     (6, "outcome of a write unknown"),
     (7, "output could not be written"),
+    (129, "stopped by SIGHUP, after the row in hand was finished"),
     (130, "stopped by SIGINT, after the row in hand was finished"),
     (
         143,

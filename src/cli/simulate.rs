@@ -85,12 +85,59 @@ for one point the last one counts."
 What goes wrong: KIND[=VALUE][,KEY=VALUE]... May be repeated: the first rule that applies to a \
 request decides.
 
-Kinds: late delay silence cut split drip endless before after echo echo-only twice crc crc-swapped \
-flip burst wrong-unit stranger stranger-only wrong-function wrong-count oversize exception \
-exception-for garbage hang-up any
+KIND is what the answer comes to. In brackets is what a value left out stands for; others are left \
+to chance.
 
-Keys of all: rate=0.1 (how probable), on=3, on=3-5, on=1/4 (which requests), for=17 (unit), \
-function=3, seed=7"
+  late=1.1          begins after so many time-outs [1.1 to 1.9]
+  delay=40ms        begins so long after the request [40ms]
+  silence           never comes
+  cut=5             breaks off after so many bytes
+  split=4           comes in two pieces, so many bytes first
+  drip=20ms         comes byte by byte, so far apart [20ms]
+  endless           comes without its CRC over and over
+  before=00FF       comes behind noise, in hex
+  after=00FF        comes with noise behind it, in hex
+  echo=5            comes behind so many request bytes [all]
+  echo-only         is the request itself
+  twice             comes twice
+  crc               has all bits of its CRC wrong
+  crc-swapped       has the bytes of its CRC swapped
+  flip=9            has this bit wrong, counted from 0
+  burst=16          has so many bits in a row damaged [1 to 16]
+  wrong-unit=9      bears this unit, and a right CRC
+  stranger=9        comes behind one of this unit
+  stranger-only=9   is one of this unit, again and again
+  wrong-function=4  bears this function [4 for 3, else 3]
+  wrong-count=+1    has a register more; -1: one fewer, odd: a
+                    byte more, 0: no data, 255: 255 bytes
+  oversize          has 257 bytes, and a right CRC
+  exception=6       is this exception
+  exception-for=16  is exception 02 of this function
+  garbage           is random bytes without end
+  hang-up=during    goes with the port, lost before, during or
+                    after it [during]
+  any               has one of these, but no hang-up, at random
+
+KEY is one of these for any kind, and says when it happens:
+
+  rate=0.1          how probable it is [1]
+  on=3              which requests, from 1; or 3-5, 3-, 1/4
+  for=17            of requests to this unit alone
+  function=3        of requests for this function alone
+  seed=7            where chance begins [0]
+
+or one of these for some:
+
+  timeout=1s        late, cut, any: what a time-out is [1s]
+  rest=1.5          cut: when the rest comes, in time-outs [never]
+  gap=20ms          split [16ms], before, after, echo, twice,
+                    stranger [0s]: from one piece to the next
+  every=20ms        endless [20ms], garbage [1ms], stranger-only
+                    [200ms]: from one byte, or frame, to the next
+  lasts=2s          endless, garbage, stranger-only: how long it
+                    goes on [until the next request]
+  with=hang-up+crc  any: what is picked as well
+  without=cut+crc   any: what is not picked"
     )]
     pub fault: Vec<String>,
     /// A file of such rules, one a line; they come after those of --fault

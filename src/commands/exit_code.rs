@@ -23,6 +23,8 @@ pub enum ExitCode {
     WriteUnknown = 6,
     /// Output could not be written.
     Output = 7,
+    /// Stopped by SIGHUP, as when a window is closed, after the row in hand was finished.
+    HungUp = 129,
     /// Stopped by SIGINT, after the row in hand was finished.
     Interrupted = 130,
     /// Stopped by SIGTERM, after the row in hand was finished.

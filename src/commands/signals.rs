@@ -1,8 +1,14 @@
-//! SIGINT and SIGTERM: the row in hand is finished first. The second one ends the program at once.
+//! SIGINT, SIGTERM and SIGHUP: the row in hand is finished first. After one of them, SIGINT or
+//! SIGTERM ends the program at once.
+//!
+//! A second SIGHUP does not: for a window that is closed one comes from the system and one from the
+//! shell, with no time between them.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+#[cfg(unix)]
+use signal_hook::consts::SIGHUP;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
@@ -10,44 +16,65 @@ use super::ExitCode;
 
 /// Raised when the program is to stop.
 pub(super) struct Stop {
-    /// Any of the two has come.
-    raised: Arc<AtomicBool>,
-    /// It was SIGTERM.
-    terminated: Arc<AtomicBool>,
+    /// The exit code of the signal that came last; 0 while none has come.
+    code: Arc<AtomicUsize>,
 }
 
 impl Stop {
     /// Listens from now on. A signal that cannot be listened to ends the program as ever.
     pub(super) fn listen() -> Self {
-        let stop = Self {
-            raised: Arc::default(),
-            terminated: Arc::default(),
+        let code = Arc::default();
+        let raised: Arc<AtomicBool> = Arc::default();
+        let note = |signal, exit: ExitCode| {
+            let _ = flag::register_usize(signal, Arc::clone(&code), usize::from(exit as u8));
+            let _ = flag::register(signal, Arc::clone(&raised));
         };
-        for signal in [SIGINT, SIGTERM] {
-            // In this order: the first signal finds the flag down and raises it.
-            let _ = flag::register_conditional_default(signal, Arc::clone(&stop.raised))
-                .and_then(|_| flag::register(signal, Arc::clone(&stop.raised)));
+        for (signal, exit) in [
+            (SIGINT, ExitCode::Interrupted),
+            (SIGTERM, ExitCode::Terminated),
+        ] {
+            // Before the others: the first signal finds the flag down.
+            if flag::register_conditional_default(signal, Arc::clone(&raised)).is_ok() {
+                note(signal, exit);
+            }
         }
-        let _ = flag::register(SIGTERM, Arc::clone(&stop.terminated));
-        stop
+        #[cfg(unix)]
+        if !ignores_hang_ups() {
+            note(SIGHUP, ExitCode::HungUp);
+        }
+        Self { code }
     }
 
     /// What to end with, once a signal has come.
     pub(super) fn requested(&self) -> Option<ExitCode> {
-        if !self.raised.load(Ordering::Relaxed) {
-            None
-        } else if self.terminated.load(Ordering::Relaxed) {
-            Some(ExitCode::Terminated)
-        } else {
-            Some(ExitCode::Interrupted)
-        }
+        let code = self.code.load(Ordering::Relaxed);
+        [
+            ExitCode::HungUp,
+            ExitCode::Interrupted,
+            ExitCode::Terminated,
+        ]
+        .into_iter()
+        .find(|exit| usize::from(*exit as u8) == code)
     }
+}
+
+/// Whether somebody wants the program to outlive its terminal, as `nohup` does, where the system
+/// tells.
+#[cfg(unix)]
+fn ignores_hang_ups() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    // The lowest bit is signal 1, which this is.
+    mask.is_some_and(|mask| mask & 1 == 1)
 }
 
 /// Ends the process as the signal would have, so that a shell sees it; returns where that cannot
 /// be done.
 pub(super) fn die(code: ExitCode) {
     let signal = match code {
+        #[cfg(unix)]
+        ExitCode::HungUp => SIGHUP,
         ExitCode::Interrupted => SIGINT,
         ExitCode::Terminated => SIGTERM,
         _ => return,

@@ -14,7 +14,7 @@ use super::signals::Stop;
 use super::{CommandError, ExitCode, print};
 use crate::cli::Simulate;
 use crate::sim::Server;
-use crate::sim::server::{ServeError, Service, State};
+use crate::sim::server::{ServeError, Service, State, Tally};
 use crate::transport::{Clock, Outside, SystemClock};
 
 /// How long a signal may go unnoticed.
@@ -44,11 +44,16 @@ pub(super) fn run(arguments: &Simulate, report: &Report) -> Result<ExitCode, Com
     let (outside, name) = place.open(settings, arguments.wait, &*clock)?;
     print(format!("{name}\n").as_bytes())?;
     if io::stderr().is_terminal() {
-        report.remark(&words(&place, &wanted, &name));
+        for line in words(&place, &wanted, &name) {
+            report.remark(&line);
+        }
     }
     let mut server = Server::new(outside, meters, service, clock);
     let result = serve(&mut server, &stop);
-    report.remark(&server.tally().to_string());
+    // Before an error counts of nothing tell nothing.
+    if result.is_ok() || *server.tally() != Tally::default() {
+        report.remark(&server.tally().to_string());
+    }
     if let Some(faults) = faults::told(&server.faults()) {
         report.remark(&faults);
     }
@@ -78,14 +83,14 @@ fn serve<O: Outside>(server: &mut Server<O>, stop: &Stop) -> Result<State, Comma
     Ok(state)
 }
 
-/// What is there and how to read it, by the name of the place.
-fn words(place: &Place, wanted: &meters::Wanted, name: &str) -> String {
-    let meters = wanted.told();
-    let read = match wanted.last() {
-        Some((meter, unit)) if place.is_line() => {
-            format!("\nread it: meterpoll read-registers -p {name} -a {unit} --meter {meter}")
-        }
-        _ => String::new(),
-    };
-    format!("{meters}{read}\nend it: Ctrl-C")
+/// What is there, how to read it, by the name of the place, and how to end it: a line each.
+fn words(place: &Place, wanted: &meters::Wanted, name: &str) -> Vec<String> {
+    let read = wanted.last().filter(|_| place.is_line());
+    let read = read.map(|(meter, unit)| {
+        format!("read it: meterpoll read-registers -p {name} -a {unit} --meter {meter}")
+    });
+    let mut words = vec![wanted.told()];
+    words.extend(read);
+    words.push("end it: Ctrl-C".to_owned());
+    words
 }
