@@ -36,6 +36,8 @@ struct Debt {
     /// From when on nobody reckons with it any more.
     forget_at: Duration,
     longest_answer: Duration,
+    /// The meter's ways tell it from other answers, however late it is.
+    can_be_told: bool,
     /// The unit has said that it is at work on it, or busy.
     is_put_off: bool,
 }
@@ -124,6 +126,7 @@ impl Debts {
             unit_until,
             forget_at: unit_until + patience.at_the_most().saturating_mul(10).max(LEAST_MEMORY),
             longest_answer: patience.longest_answer,
+            can_be_told: patience.ways.tell_late_answers(),
             is_put_off: false,
         });
     }
@@ -170,12 +173,18 @@ impl Debts {
         }
     }
 
-    /// The unit has put off this request: an answer is not waited for, and can come still.
+    /// The unit has put off this request. It should not answer it now, but some do: where that could
+    /// be told, it is not waited for.
     pub(super) fn put_off(&mut self, unit: Unit, frame: &Frame) {
         if let Some(account) = self.0.get_mut(&unit)
             && let Some(debt) = account.pay(frame)
         {
-            account.overdue.push(Debt {
+            let debts = if debt.can_be_told {
+                &mut account.overdue
+            } else {
+                &mut account.awaited
+            };
+            debts.push(Debt {
                 is_put_off: true,
                 ..debt
             });

@@ -62,6 +62,13 @@ pub struct Ways {
     pub loopback: Option<QueryData>,
 }
 
+impl Ways {
+    /// Whether they are good for anything.
+    pub(super) const fn tell_late_answers(self) -> bool {
+        self.interchangeable_reads || self.loopback.is_some()
+    }
+}
+
 /// The data that a meter's function 08 takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum QueryData {

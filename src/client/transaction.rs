@@ -147,10 +147,9 @@ impl Client {
     }
 
     /// Takes an answer as paid, and remembers it, for a second copy of it may follow. What a gateway
-    /// says pays nothing: the unit behind it can still answer. A unit that is at work should not, but
-    /// some do, so that is reckoned with and not waited for. After an answer to a loop-back nothing
-    /// asked before comes any more: a meter answers one request after the other, and what carries
-    /// its bytes keeps their order.
+    /// says pays nothing: the unit behind it can still answer. A unit that is at work may do so as
+    /// well. After an answer to a loop-back nothing asked before comes any more: a meter answers one
+    /// request after the other, and what carries its bytes keeps their order.
     pub(super) fn take(&mut self, unit: Unit, frame: &Frame, reply: &Reply) {
         if reply.exception().is_some_and(ExceptionCode::is_of_gateway) {
             return;
