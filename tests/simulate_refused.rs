@@ -75,15 +75,17 @@ fn units_that_a_meter_cannot_have() {
 
 #[test]
 fn a_unit_simulated_twice() {
-    let hint = "hint: units are given with the meter: --meter pqm=17,18\n";
+    let hint = "hint: each unit is one meter: --meter pqm=17,18 --meter em24=1\n";
     let error = "error: unit 1 is to be both pqm and em24\n";
     refused("--meter pqm=1 --meter em24=1", 2, &format!("{error}{hint}"));
-    let error = "error: unit 3 is to be both em21 and em21\n";
-    refused(
-        "--meter em21 --meter em21=2-4",
-        2,
-        &format!("{error}{hint}"),
-    );
+    for (meters, twice) in [
+        ("--meter em21 --meter em21=2-4", "3 is to be em21"),
+        ("--meter pqm=1,1", "1 is to be pqm"),
+        ("--meter em24=7 --meter pqm=1-5,9,4", "4 is to be pqm"),
+    ] {
+        let error = format!("error: unit {twice} twice\n");
+        refused(meters, 2, &format!("{error}{hint}"));
+    }
 }
 
 #[test]

@@ -81,13 +81,13 @@ pub enum CommandError {
         port: String,
     },
     /// Two simulated meters of one unit.
-    #[error("unit {unit} is to be both {first} and {second}")]
+    #[error("unit {unit} is to be {}", twice(.first, .second))]
     UnitTwice {
         /// The unit.
         unit: Unit,
         /// The meter that has it.
         first: String,
-        /// The meter that is to have it as well.
+        /// The meter that is to have it as well; it may be the same.
         second: String,
     },
     /// There is no pty.
@@ -127,4 +127,13 @@ pub enum CommandError {
     /// Stdout does not take what is written.
     #[error("the output cannot be written")]
     Output(#[source] io::Error),
+}
+
+/// `both pqm and em24`, `pqm twice`.
+fn twice(first: &str, second: &str) -> String {
+    if first == second {
+        format!("{first} twice")
+    } else {
+        format!("both {first} and {second}")
+    }
 }

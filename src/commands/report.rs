@@ -219,7 +219,9 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::Listen(ListenError::InUse { .. }) => {
             "take another port; port 0 is any that is free"
         }
-        CommandError::UnitTwice { .. } => "units are given with the meter: --meter pqm=17,18",
+        CommandError::UnitTwice { .. } => {
+            "each unit is one meter: --meter pqm=17,18 --meter em24=1"
+        }
         CommandError::Pty(PtyError::Exists { .. }) => {
             "a pty needs a name that is free; a simulation that was killed leaves its own behind: \
              remove it when none runs there any more"
