@@ -188,7 +188,7 @@ fn what_is_wrong_is_told_with_file_and_line() {
     for (text, expected) in [
         (
             "",
-            "FILE:1: there is no column 'point' in the header, which has ",
+            "FILE is empty: its first line names the columns, point,value",
         ),
         (
             "point\ncurrent_a\n",

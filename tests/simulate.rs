@@ -260,16 +260,6 @@ fn a_pty_that_has_hung_up_is_there_again_under_its_name() {
 }
 
 #[test]
-fn a_pty_without_a_name_is_over_when_it_has_hung_up() {
-    let simulation = Simulation::new("--fault hang-up=before");
-    let output = simulation.reading("-a 17 0 -f csv").output();
-    assert_eq!(output.status.code(), Some(3));
-    let expected = "1 request (function 03: 1), 0 answers\nfaults: hang-up 1\n\
-                    the line has hung up; a pty that has a name (--port) would be there again\n";
-    assert_eq!(simulation.ended(), Ended::with(0, expected));
-}
-
-#[test]
 fn a_serial_port_is_served_until_it_is_lost() {
     let (mut client, other, path) = pair().unwrap();
     let simulation = Simulation::new(&format!("--port {path} -b 19200 -P even"));
@@ -343,7 +333,7 @@ fn what_others_left_is_never_written_over() {
     fs::write(&path, "precious").unwrap();
     Program::new(&format!("simulate --port {name} -q"))
         .code(3)
-        .stderr(format!("error: port {name} is a file, not a serial port\n"))
+        .stderr(format!("error: {name} exists already, as a file\n"))
         .run();
     assert_eq!(fs::read_to_string(&path).unwrap(), "precious");
     fs::remove_file(path).unwrap();

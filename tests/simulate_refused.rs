@@ -75,15 +75,17 @@ fn units_that_a_meter_cannot_have() {
 
 #[test]
 fn a_unit_simulated_twice() {
-    let hint = "hint: units are given with the meter: --meter pqm=17,18\n";
+    let hint = "hint: each unit is one meter: --meter pqm=17,18 --meter em24=1\n";
     let error = "error: unit 1 is to be both pqm and em24\n";
     refused("--meter pqm=1 --meter em24=1", 2, &format!("{error}{hint}"));
-    let error = "error: unit 3 is to be both em21 and em21\n";
-    refused(
-        "--meter em21 --meter em21=2-4",
-        2,
-        &format!("{error}{hint}"),
-    );
+    for (meters, twice) in [
+        ("--meter em21 --meter em21=2-4", "3 is to be em21"),
+        ("--meter pqm=1,1", "1 is to be pqm"),
+        ("--meter em24=7 --meter pqm=1-5,9,4", "4 is to be pqm"),
+    ] {
+        let error = format!("error: unit {twice} twice\n");
+        refused(meters, 2, &format!("{error}{hint}"));
+    }
 }
 
 #[test]
@@ -108,8 +110,8 @@ fn places_where_no_meter_can_be() {
     refused(
         "--port /tmp",
         3,
-        "error: port /tmp is a directory, not a serial port\n\
-         hint: `meterpoll ports` lists the ports\n",
+        "error: /tmp exists already, as a directory\n\
+         hint: a pty needs a name that is free\n",
     );
     refused(
         "--port /nonexistent/meter",
@@ -212,7 +214,7 @@ fn fault_rules_that_are_none() {
 
 #[test]
 fn faults_that_modbus_tcp_cannot_carry() {
-    for rule in ["cut=3", "any", "crc,rate=0.1", "garbage", "echo"] {
+    for rule in ["cut=3", "crc,rate=0.1", "garbage", "echo"] {
         refused(
             &format!("--port tcp://127.0.0.1:0 --fault silence --fault {rule}"),
             2,
@@ -222,6 +224,82 @@ fn faults_that_modbus_tcp_cannot_carry() {
             ),
         );
     }
+}
+
+#[test]
+fn faults_of_which_modbus_tcp_can_carry_some() {
+    for rule in ["any", "any,without=cut,rate=0.1"] {
+        refused(
+            &format!("--port tcp://127.0.0.1:0 --fault {rule}"),
+            2,
+            &format!(
+                "error: some kinds that fault rule '{rule}' picks from leave no whole frame, and \
+                 Modbus TCP carries no other\nhint: rtu+tcp:// and ptys show all faults\n"
+            ),
+        );
+    }
+}
+
+#[test]
+fn a_hang_up_that_would_be_the_end() {
+    let file = free_path("refused-hang-up.txt");
+    fs::write(&file, "crc\nhang-up,on=3\n").unwrap();
+    let script = format!("--fault-script {}", file.display());
+    for (arguments, rule) in [
+        ("--fault hang-up", "hang-up"),
+        (
+            "--fault crc --fault hang-up=after,on=9",
+            "hang-up=after,on=9",
+        ),
+        ("--fault any,with=hang-up", "any,with=hang-up"),
+        (&script, "hang-up,on=3"),
+    ] {
+        refused(
+            arguments,
+            2,
+            &format!(
+                "error: fault rule '{rule}' can end the line for good: a pty without a name is not \
+                 found again\nhint: --port /tmp/meter gives the pty a name\n"
+            ),
+        );
+    }
+    fs::remove_file(file).unwrap();
+}
+
+#[test]
+fn words_that_are_no_paths() {
+    for word in ["COM3", "ttyUSB0", "meter", "Cargo.toml"] {
+        refused(
+            &format!("--port {word}"),
+            2,
+            &format!(
+                "error: a port is a path, and '{word}' has no / in it\n\
+                 hint: a serial port is named like /dev/ttyUSB0; ./{word} makes a pty of that name \
+                 in this folder\n"
+            ),
+        );
+    }
+    refused(
+        "--port ./Cargo.toml",
+        3,
+        "error: ./Cargo.toml exists already, as a file\n\
+         hint: a pty needs a name that is free\n",
+    );
+}
+
+#[test]
+fn values_in_an_empty_file() {
+    let file = free_path("refused-empty.csv");
+    let name = file.display();
+    for text in ["", "\n\n", "\u{FEFF}"] {
+        fs::write(&file, text).unwrap();
+        refused(
+            &format!("--values {name}"),
+            2,
+            &format!("error: {name} is empty: its first line names the columns, point,value\n"),
+        );
+    }
+    fs::remove_file(file).unwrap();
 }
 
 #[test]

@@ -45,20 +45,27 @@ impl FromStr for Units {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let mut units = Vec::new();
-        for part in text.split(',') {
-            let (first, last) = part.split_once('-').unwrap_or((part, part));
-            let (first, last) = (number(first)?, number(last)?);
-            if first > last {
-                return Err(format!("{part} runs backwards"));
-            }
-            for unit in first..=last {
-                if !units.contains(&unit) {
-                    units.push(unit);
-                }
+        for unit in numbers(text)? {
+            if !units.contains(&unit) {
+                units.push(unit);
             }
         }
         Ok(Self(units))
     }
+}
+
+/// All numbers as typed, those that are there again as well.
+fn numbers(text: &str) -> Result<Vec<u16>, String> {
+    let mut numbers = Vec::new();
+    for part in text.split(',') {
+        let (first, last) = part.split_once('-').unwrap_or((part, part));
+        let (first, last) = (number(first)?, number(last)?);
+        if first > last {
+            return Err(format!("{part} runs backwards"));
+        }
+        numbers.extend(first..=last);
+    }
+    Ok(numbers)
 }
 
 fn number(text: &str) -> Result<u16, String> {
@@ -79,8 +86,8 @@ fn number(text: &str) -> Result<u16, String> {
 pub struct MeterUnits {
     /// A name or a profile file.
     pub meter: String,
-    /// The units, when any were given.
-    pub units: Option<Units>,
+    /// The units, when any were given; one that was given twice is there twice.
+    pub units: Option<Vec<u16>>,
 }
 
 impl FromStr for MeterUnits {
@@ -94,12 +101,12 @@ impl FromStr for MeterUnits {
         let Some((meter, units)) = text.rsplit_once('=') else {
             return Ok(whole());
         };
-        match units.parse::<Units>() {
+        match numbers(units) {
             // A file may have any name.
             Err(_) if units.contains(std::path::is_separator) => Ok(whole()),
             Err(_) if has_ending(units) => Ok(whole()),
             Err(problem) => Err(problem),
-            Ok(units) if units.0.contains(&0) => {
+            Ok(units) if units.contains(&0) => {
                 Err("unit 0 is the broadcast address, which no meter answers".to_owned())
             }
             Ok(units) => Ok(Self {

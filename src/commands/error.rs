@@ -80,14 +80,20 @@ pub enum CommandError {
         /// What was named.
         port: String,
     },
+    /// A word that is no path, where a pty of that name would be made.
+    #[error("a port is a path, and '{port}' has no / in it")]
+    NoPath {
+        /// What was named.
+        port: String,
+    },
     /// Two simulated meters of one unit.
-    #[error("unit {unit} is to be both {first} and {second}")]
+    #[error("unit {unit} is to be {}", twice(.first, .second))]
     UnitTwice {
         /// The unit.
         unit: Unit,
         /// The meter that has it.
         first: String,
-        /// The meter that is to have it as well.
+        /// The meter that is to have it as well; it may be the same.
         second: String,
     },
     /// There is no pty.
@@ -116,8 +122,18 @@ pub enum CommandError {
         source: io::Error,
     },
     /// A fault that cannot be shown to clients of Modbus TCP.
-    #[error("fault rule '{rule}' leaves no whole frame, and Modbus TCP carries no other")]
+    #[error("{} no whole frame, and Modbus TCP carries no other", .kinds.told(.rule))]
     FaultNotShown {
+        /// The rule.
+        rule: String,
+        /// How much of what it does cannot be shown.
+        kinds: HiddenKinds,
+    },
+    /// A fault that leaves clients no way back.
+    #[error(
+        "fault rule '{rule}' can end the line for good: a pty without a name is not found again"
+    )]
+    HangUpForGood {
         /// The rule.
         rule: String,
     },
@@ -127,4 +143,31 @@ pub enum CommandError {
     /// Stdout does not take what is written.
     #[error("the output cannot be written")]
     Output(#[source] io::Error),
+}
+
+/// How many of the faults of a rule cannot be shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HiddenKinds {
+    /// Its one kind.
+    All,
+    /// Some of those that it picks from.
+    Some,
+}
+
+impl HiddenKinds {
+    fn told(self, rule: &str) -> String {
+        match self {
+            Self::All => format!("fault rule '{rule}' leaves"),
+            Self::Some => format!("some kinds that fault rule '{rule}' picks from leave"),
+        }
+    }
+}
+
+/// `both pqm and em24`, `pqm twice`.
+fn twice(first: &str, second: &str) -> String {
+    if first == second {
+        format!("{first} twice")
+    } else {
+        format!("both {first} and {second}")
+    }
 }

@@ -24,7 +24,7 @@ use crate::cli::{self, Command};
 
 use report::Report;
 
-pub use error::CommandError;
+pub use error::{CommandError, HiddenKinds};
 pub use exit_code::ExitCode;
 
 /// Runs the program with these arguments, the first being its own name, and returns what it ends

@@ -16,7 +16,7 @@ use crate::profile::selector::SelectError;
 use crate::readings::Trouble;
 use crate::transport::holder::Holders;
 use crate::transport::listen::ListenError;
-use crate::transport::{OpenError, PtyError};
+use crate::transport::{Existing, OpenError, PtyError};
 
 /// What to make of a port that was lost.
 const LOST_HINT: &str = "the adapter was unplugged, or the other side hung up; /dev/serial/by-id \
@@ -178,6 +178,8 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::Values(_)
         | CommandError::Faults { .. }
         | CommandError::FaultsUnreadable { .. }
+        | CommandError::NoPath { .. }
+        | CommandError::HangUpForGood { .. }
         | CommandError::FaultNotShown { .. } => ExitCode::Usage,
         CommandError::Open(_)
         | CommandError::Lost(_)
@@ -219,11 +221,24 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::Listen(ListenError::InUse { .. }) => {
             "take another port; port 0 is any that is free"
         }
-        CommandError::UnitTwice { .. } => "units are given with the meter: --meter pqm=17,18",
-        CommandError::Pty(PtyError::Exists { .. }) => {
+        CommandError::UnitTwice { .. } => {
+            "each unit is one meter: --meter pqm=17,18 --meter em24=1"
+        }
+        CommandError::Pty(PtyError::Exists {
+            what: Existing::LinkToPty | Existing::LostLink,
+            ..
+        }) => {
             "a pty needs a name that is free; a simulation that was killed leaves its own behind: \
              remove it when none runs there any more"
         }
+        CommandError::Pty(PtyError::Exists { .. }) => "a pty needs a name that is free",
+        CommandError::NoPath { port } => {
+            return Some(format!(
+                "a serial port is named like /dev/ttyUSB0; ./{port} makes a pty of that name in this \
+                 folder"
+            ));
+        }
+        CommandError::HangUpForGood { .. } => "--port /tmp/meter gives the pty a name",
         CommandError::FaultNotShown { .. } => "rtu+tcp:// and ptys show all faults",
         CommandError::Open(error) => return open_hint(error),
         CommandError::Lost(_) => LOST_HINT,

@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &Simulate, report: &Report) -> Result<ExitCode, Com
     let wanted = meters::wanted(arguments)?;
     let settings = place.settings(arguments, wanted.factory_setting())?;
     let framing = place.framing(settings);
-    let script = faults::script(arguments, framing)?;
+    let script = faults::script(arguments, framing, place.comes_back())?;
     let clock: Arc<dyn Clock> = Arc::new(SystemClock::new());
     let meters = wanted.make(arguments, clock.utc_now())?;
     let service = Service {
@@ -59,9 +59,7 @@ pub(super) fn run(arguments: &Simulate, report: &Report) -> Result<ExitCode, Com
     }
     match result? {
         State::HungUp => {
-            report.remark(
-                "the line has hung up; a pty that has a name (--port) would be there again",
-            );
+            report.remark("the line has hung up");
             Ok(ExitCode::Done)
         }
         State::Done => Ok(ExitCode::Done),

@@ -34,6 +34,12 @@ pub enum ValuesError {
         /// What is wrong there.
         problem: &'static str,
     },
+    /// A file without a header.
+    #[error("{file} is empty: its first line names the columns, point,value")]
+    Empty {
+        /// The file.
+        file: String,
+    },
     /// A column that must be there.
     #[error("{file}:1: there is no column '{column}' in the header, which has {found}")]
     NoColumn {
@@ -137,6 +143,10 @@ fn better(
 fn rows(file: &str, text: &[u8], meters: &[Meter]) -> Result<Vec<Row>, ValuesError> {
     // Some spreadsheets begin their files with this mark.
     let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
+    if text.trim_ascii().is_empty() {
+        let file = file.to_owned();
+        return Err(ValuesError::Empty { file });
+    }
     let mut reader = ReaderBuilder::new().from_reader(text);
     let malformed = |error: csv::Error| malformed(file, &error);
     let header = reader.headers().map_err(malformed)?.clone();

@@ -1,5 +1,6 @@
 //! What can go wrong with a port.
 
+use std::fmt;
 use std::io;
 use std::time::Duration;
 
@@ -124,7 +125,7 @@ pub enum PtyError {
         /// The name.
         path: String,
         /// What it is.
-        what: &'static str,
+        what: Existing,
     },
     /// The name cannot be given.
     #[error("the pty cannot be named {path}")]
@@ -134,4 +135,31 @@ pub enum PtyError {
         /// What the system said.
         source: io::Error,
     },
+}
+
+/// What has a name that a pty was to have. Prints as `a file`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existing {
+    /// A link to a pty, of a program that runs or of one that was killed.
+    LinkToPty,
+    /// A link that leads nowhere.
+    LostLink,
+    /// A directory.
+    Directory,
+    /// A file.
+    File,
+    /// Anything else.
+    Other,
+}
+
+impl fmt::Display for Existing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::LinkToPty => "a link to a pty",
+            Self::LostLink => "a link that leads nowhere",
+            Self::Directory => "a directory",
+            Self::File => "a file",
+            Self::Other => "something else",
+        })
+    }
 }

@@ -27,7 +27,7 @@ pub mod traced;
 use std::time::Duration;
 
 pub use clock::{Clock, SystemClock};
-pub use error::{OpenError, PtyError, TransportError};
+pub use error::{Existing, OpenError, PtyError, TransportError};
 pub use faulty::{FaultScript, Faulty};
 pub use line::Line;
 pub use outside::{Afterwards, ClientId, Heard, Outside};

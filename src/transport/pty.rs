@@ -13,6 +13,7 @@ mod visitors;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -25,7 +26,7 @@ use rustix::termios::ioctl_tiocnxcl;
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use super::outside::{CHUNK, heard_on_line};
-use super::{Afterwards, ClientId, Heard, OpenError, Outside, PtyError, TransportError};
+use super::{Afterwards, ClientId, Existing, Heard, OpenError, Outside, PtyError, TransportError};
 
 /// After this long what was written has come to the other end, and if it is not there, it was read.
 const ON_ITS_WAY: Duration = Duration::from_millis(100);
@@ -300,12 +301,18 @@ fn is_pty(path: &Path) -> bool {
     number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-fn kind_of_file(path: &Path) -> &'static str {
+/// Whether there is a device of this name, such as a serial port.
+pub fn is_device(path: &Path) -> bool {
+    path.metadata()
+        .is_ok_and(|found| found.file_type().is_char_device())
+}
+
+fn kind_of_file(path: &Path) -> Existing {
     match path.symlink_metadata().map(|found| found.file_type()) {
-        _ if is_link_to_pty(path) => "a link to a pty",
-        Ok(kind) if kind.is_dir() => "a directory",
-        Ok(kind) if kind.is_symlink() && !path.exists() => "a link that leads nowhere",
-        Ok(kind) if kind.is_file() => "a file",
-        _ => "something else",
+        _ if is_link_to_pty(path) => Existing::LinkToPty,
+        Ok(kind) if kind.is_dir() => Existing::Directory,
+        Ok(kind) if kind.is_symlink() && !path.exists() => Existing::LostLink,
+        Ok(kind) if kind.is_file() => Existing::File,
+        _ => Existing::Other,
     }
 }

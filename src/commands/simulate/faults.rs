@@ -1,12 +1,17 @@
 //! What goes wrong: the rules that were typed, and those in a file.
 
 use crate::cli::Simulate;
-use crate::commands::CommandError;
+use crate::commands::{CommandError, HiddenKinds};
 use crate::sim::server::Framing;
-use crate::transport::faulty::{FaultCounts, FaultRule, FaultScript, FaultScriptError};
+use crate::transport::faulty::{FaultCounts, FaultKind, FaultRule, FaultScript, FaultScriptError};
 
-/// All rules, those that were typed first.
-pub(super) fn script(arguments: &Simulate, framing: Framing) -> Result<FaultScript, CommandError> {
+/// All rules, those that were typed first; `comes_back` tells whether the line is there again after it
+/// was lost.
+pub(super) fn script(
+    arguments: &Simulate,
+    framing: Framing,
+    comes_back: bool,
+) -> Result<FaultScript, CommandError> {
     let wrong = |file: Option<&String>| {
         let file = file.cloned();
         move |problem: FaultScriptError| CommandError::Faults {
@@ -27,6 +32,16 @@ pub(super) fn script(arguments: &Simulate, framing: Framing) -> Result<FaultScri
     let is_hidden = |rule: &&FaultRule| !framing.shows(rule.kind());
     if let Some(rule) = script.rules().iter().find(is_hidden) {
         return Err(CommandError::FaultNotShown {
+            rule: rule.text().to_owned(),
+            kinds: match rule.kind() {
+                FaultKind::Any => HiddenKinds::Some,
+                _ => HiddenKinds::All,
+            },
+        });
+    }
+    let hangs_up = |rule: &&FaultRule| rule.may_be(FaultKind::HangUp);
+    if let Some(rule) = script.rules().iter().find(hangs_up).filter(|_| !comes_back) {
+        return Err(CommandError::HangUpForGood {
             rule: rule.text().to_owned(),
         });
     }

@@ -27,16 +27,19 @@ pub(super) fn wanted(arguments: &Simulate) -> Result<Wanted, CommandError> {
     let mut wanted: Vec<(Profile, Vec<Unit>)> = Vec::new();
     for MeterUnits { meter, units } in typed {
         let profile = find::find(&meter)?;
-        let numbers = units.map_or_else(|| vec![kinds::usual_unit(&profile.name)], |units| units.0);
+        let numbers = units.unwrap_or_else(|| vec![kinds::usual_unit(&profile.name)]);
         let units: Vec<Unit> = numbers
             .into_iter()
             .map(|number| Unit::new(number, profile.limits.units).map_err(CommandError::Unit))
             .collect::<Result<_, _>>()?;
-        for (other, taken) in &wanted {
-            if let Some(unit) = units.iter().find(|unit| taken.contains(unit)) {
+        for (place, unit) in units.iter().enumerate() {
+            let mut others = wanted.iter().filter(|(_, taken)| taken.contains(unit));
+            let other = others.next().map(|(other, _)| &other.name);
+            let is_again = units.iter().take(place).any(|earlier| earlier == unit);
+            if let Some(first) = other.or(is_again.then_some(&profile.name)) {
                 return Err(CommandError::UnitTwice {
                     unit: *unit,
-                    first: other.name.clone(),
+                    first: first.clone(),
                     second: profile.name,
                 });
             }

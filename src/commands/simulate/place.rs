@@ -10,7 +10,7 @@ use crate::sim::server::Framing;
 use crate::transport::listen::Listener;
 use crate::transport::outside::SerialOutside;
 #[cfg(unix)]
-use crate::transport::pty::{Pty, is_link_to_pty};
+use crate::transport::pty::{Pty, is_device, is_link_to_pty};
 use crate::transport::{Clock, LineSettings, Outside, PtyError};
 
 /// Silence that ends what has no end of its own: far longer than the pauses of a program that was
@@ -50,9 +50,13 @@ impl Place {
         }
         let path = Path::new(port);
         // A slip in the name of a port must not make one.
-        let is_there = path.exists() && !is_link_to_pty(path);
+        let is_there = is_device(path) && !is_link_to_pty(path);
         if cfg!(windows) || path.starts_with("/dev") || is_there {
             return Ok(Self::Serial(port.to_owned()));
+        }
+        if !port.contains('/') {
+            let port = port.to_owned();
+            return Err(CommandError::NoPath { port });
         }
         Ok(Self::Pty(Some(path.to_owned())))
     }
@@ -60,6 +64,11 @@ impl Place {
     /// Whether a client opens it like a serial port.
     pub(super) const fn is_line(&self) -> bool {
         matches!(self, Self::Pty(_) | Self::Serial(_))
+    }
+
+    /// Whether clients find it again after it was lost.
+    pub(super) const fn comes_back(&self) -> bool {
+        !matches!(self, Self::Pty(None))
     }
 
     /// How clients frame what they send.
@@ -127,6 +136,11 @@ fn pty(name: Option<&Path>) -> Result<(Box<dyn Outside>, String), PtyError> {
     };
     let path = pty.path();
     Ok((Box::new(pty), path))
+}
+
+#[cfg(not(unix))]
+fn is_device(_: &Path) -> bool {
+    false
 }
 
 #[cfg(not(unix))]

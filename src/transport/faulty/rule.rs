@@ -66,6 +66,14 @@ impl FaultRule {
         self.kind
     }
 
+    /// Whether a fault of this kind can come of it: its own, or one that `any` picks.
+    pub fn may_be(&self, kind: FaultKind) -> bool {
+        match &self.effect {
+            Effect::Any(choices) => choices.iter().any(|choice| choice.kind == kind),
+            _ => self.kind == kind,
+        }
+    }
+
     /// The rule as it was typed.
     pub fn text(&self) -> &str {
         &self.text
