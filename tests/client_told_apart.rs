@@ -260,6 +260,26 @@ fn a_damaged_answer_to_a_loop_back_is_asked_for_again() {
 }
 
 #[test]
+fn a_late_answer_behind_an_echo_does_not_hide_that_the_line_echoes() {
+    let mut bench = Bench::new();
+    let mut late = None;
+    bench.line.meter(move |frame| {
+        let echo = (Duration::ZERO, frame.to_vec());
+        match late.take() {
+            None => {
+                late = Some(answer(frame));
+                Vec::new()
+            }
+            Some(first) => vec![echo, (ms(100), first), (ms(200), answer(frame))],
+        }
+    });
+    assert!(bench.reads(1, FUNCTIONS_ONLY).is_err());
+    assert_eq!(bench.client.echoes(), Some(false));
+    bench.reads(2, FUNCTIONS_ONLY).expect("an answer");
+    assert_eq!(bench.client.echoes(), Some(true));
+}
+
+#[test]
 fn silence_without_a_byte_shows_that_the_line_does_not_echo() {
     let mut bench = Bench::new();
     bench.be_silent();

@@ -11,6 +11,7 @@ use super::patience::Patience;
 use super::transaction::{ADAPTER_LATENCY, Client};
 use crate::codec::rtu::{self, Frame};
 use crate::codec::{Reply, Request, Unit};
+use crate::transport::TransportError;
 use crate::transport::line::Quiet;
 
 /// A gap this long after a damaged answer means that nothing more comes: six periods of an adapter
@@ -59,16 +60,22 @@ pub(super) struct Answer {
     pub(super) took: Duration,
 }
 
+/// Why listening has ended without an answer.
+enum End {
+    Lost(TransportError),
+    TimeIsUp,
+}
+
 /// What has been heard since the request went out.
 #[derive(Default)]
 struct Heard {
-    /// How many bytes came in all.
-    bytes: usize,
     received: Vec<u8>,
     arrivals: Arrivals,
     evidence: Evidence,
     /// Bytes that were let go: they belong to nothing.
     forgotten: usize,
+    /// Answers to earlier requests were cut out, with all that was before them.
+    is_cut: bool,
 }
 
 impl Client {
@@ -108,8 +115,8 @@ impl Client {
         counters.others += heard.evidence.others as u64;
         let reply = match result {
             Ok(reply) => reply,
-            Err(Some(lost)) => return Err(lost),
-            Err(None) => {
+            Err(End::Lost(error)) => return Err(error.into()),
+            Err(End::TimeIsUp) => {
                 let failure = self.give_up(asked, &heard);
                 // Else they are the answer's own.
                 if failure.is_silence() {
@@ -150,14 +157,8 @@ impl Client {
     }
 
     /// Receives until the answer is there. It must begin within the time-out; one that has begun
-    /// gets its transfer time on top. The error is the loss of the port, or nothing when the time
-    /// is up.
-    fn listen(
-        &mut self,
-        asked: &Asked,
-        sent: Duration,
-        heard: &mut Heard,
-    ) -> Result<Reply, Option<Failure>> {
+    /// gets its transfer time on top.
+    fn listen(&mut self, asked: &Asked, sent: Duration, heard: &mut Heard) -> Result<Reply, End> {
         let begin_by = sent + asked.patience.timeout;
         let end_by = begin_by + self.transfer_time(&asked.request) + ADAPTER_LATENCY;
         let mut deadline = begin_by;
@@ -167,14 +168,13 @@ impl Client {
             let came = self
                 .line
                 .receive_into(&mut heard.received, left)
-                .map_err(|lost| Some(lost.into()))?;
+                .map_err(End::Lost)?;
             if came == 0 && left.is_zero() {
-                return Err(None);
+                return Err(End::TimeIsUp);
             }
             if came == 0 {
                 continue;
             }
-            heard.bytes += came;
             let is_whole = heard.forgotten == 0 && heard.received.len() <= MOST_RECEIVED;
             heard.arrivals.note(came, self.line.now(), is_whole);
             if let Some(reply) = self.judge(asked, heard) {
@@ -190,9 +190,8 @@ impl Client {
                 heard.evidence.stray = heard.evidence.stray.saturating_sub(useless);
             }
             heard.forgotten += forget_oldest(&mut heard.received);
-            self.learn_echo(asked, &heard.evidence, false);
             if left.is_zero() {
-                return Err(None);
+                return Err(End::TimeIsUp);
             }
             deadline = if heard.evidence.has_begun() {
                 end_by
@@ -210,12 +209,16 @@ impl Client {
             let expectation = asked.expectation(self.echo, self.echoes);
             match expectation.judge(&heard.received) {
                 Verdict::Answer(reply, before) => {
-                    self.learn_echo(asked, &before, true);
                     heard.evidence = before;
+                    self.learn_echo(&heard.evidence);
+                    if self.is_clean(asked, heard) {
+                        self.echoes = Some(false);
+                    }
                     return Some(reply);
                 }
                 Verdict::Waiting(found) => heard.evidence = found,
             }
+            self.learn_echo(&heard.evidence);
             // A frame of the unit that does not answer this may answer what was asked before.
             heard.evidence.mismatch.as_ref()?;
             let others = Some((asked.unit, &asked.frame));
@@ -230,6 +233,7 @@ impl Client {
             self.take(late.unit, &late.frame, &late.reply);
             heard.received.drain(..late.end);
             heard.arrivals = Arrivals::useless();
+            heard.is_cut = true;
         }
     }
 
@@ -256,8 +260,19 @@ impl Client {
 
     /// The time is up.
     fn give_up(&mut self, asked: &Asked, heard: &Heard) -> Failure {
-        // A line that echoes does so whether or not anybody answers.
-        if heard.bytes < asked.frame.as_bytes().len() {
+        let Evidence {
+            stray,
+            damaged,
+            mismatch,
+            ..
+        } = &heard.evidence;
+        // A line that echoes does so whether or not anybody answers; nothing here can have been an
+        // echo that was damaged.
+        if *stray < asked.frame.as_bytes().len()
+            && damaged.is_none()
+            && mismatch.is_none()
+            && !heard.is_cut
+        {
             self.echoes.get_or_insert(false);
         }
         if heard.evidence.damaged == Some(Certainty::Certain) {
@@ -271,21 +286,21 @@ impl Client {
         )
     }
 
-    /// An echo shows that the line does so; an answer with nothing before it that it does not, if it
-    /// was asked for once and so is no late one that came ahead of the echo.
-    fn learn_echo(&mut self, asked: &Asked, seen: &Evidence, is_answered: bool) {
-        if seen.echoes > 0 {
-            if self.echoes != Some(true) {
-                info!("the line sends our own bytes back");
-            }
+    fn learn_echo(&mut self, seen: &Evidence) {
+        if seen.echoes > 0 && self.echoes != Some(true) {
+            info!("the line sends our own bytes back");
             self.echoes = Some(true);
-        } else if is_answered
-            && self.debts.count(asked.unit) == 1
-            && *seen == Evidence::default()
-            && !belief::is_mirrored(&asked.request)
-        {
-            self.echoes = Some(false);
         }
+    }
+
+    /// Whether an answer has come with nothing before it, so that the line does not echo: it was
+    /// asked for once, so it is no late one that came ahead of the echo.
+    fn is_clean(&self, asked: &Asked, heard: &Heard) -> bool {
+        self.debts.count(asked.unit) == 1
+            && heard.evidence == Evidence::default()
+            && heard.forgotten == 0
+            && !heard.is_cut
+            && !belief::is_mirrored(&asked.request)
     }
 }
 

@@ -23,7 +23,6 @@ use crate::codec::{Frame, FunctionCode, Reply, Request, Unit};
 const LEAST_MEMORY: Duration = Duration::from_secs(10);
 
 /// A request that was sent and not answered.
-#[derive(Clone)]
 struct Debt {
     request: Request,
     frame: Frame,

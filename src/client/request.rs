@@ -234,12 +234,13 @@ impl Client {
         if same.is_some() {
             return Ok(first.clone());
         }
-        let mut sure: Vec<&Asked> = forms().filter(|form| !self.is_doubtful(form)).collect();
         // A second copy of the answer to the same question is told by the function as well.
         let since = self.line.now().saturating_sub(patience.at_the_most());
-        sure.sort_by_key(|form| self.recent.is_repeated(since, unit, &form.frame));
-        if let Some(form) = sure.first() {
-            return Ok((*form).clone());
+        let sure = forms()
+            .filter(|form| !self.is_doubtful(form))
+            .min_by_key(|form| self.recent.is_repeated(since, unit, &form.frame));
+        if let Some(form) = sure {
+            return Ok(form.clone());
         }
         self.make_sure(wanted)?;
         Ok(wanted.clone())

@@ -71,12 +71,9 @@ pub fn find_out(
             Some(false) => return Ok(LineEcho::Absent),
             None => {}
         }
-        match result {
-            Err(Failure::Port(error)) => return Err(Failure::Port(error)),
-            // An echo would have been heard.
-            Err(Failure::Silence { stray: 0, .. }) => return Ok(LineEcho::Absent),
-            // A damaged echo looks like noise.
-            _ => {}
+        // Damage and noise may hide an echo; that the port is lost is not for another read.
+        if let Err(lost @ Failure::Port(_)) = result {
+            return Err(lost);
         }
     }
     Ok(LineEcho::Unknown)
