@@ -26,6 +26,7 @@ mod profile {
     pub mod scaling;
     pub mod setup;
     pub mod value;
+    pub mod writing;
 }
 
 mod transport {

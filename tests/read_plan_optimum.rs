@@ -4,6 +4,7 @@
 #[path = "support/cases.rs"]
 mod cases;
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use meterpoll::codec::value::{ByteOrder, RegisterType};
@@ -304,6 +305,11 @@ fn any_case() -> impl Strategy<Value = Case> {
                     groups: Vec::new(),
                     factors: Vec::new(),
                     identities: Vec::new(),
+                    operations: Vec::new(),
+                    command_registers: None,
+                    clock: None,
+                    status_bits: BTreeMap::new(),
+                    distinct: Vec::new(),
                     points,
                 },
                 settings,

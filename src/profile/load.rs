@@ -61,6 +61,11 @@ pub(super) fn checked(source: &Source<'_>) -> Result<(ProfileFile, Profile), Pro
         factors,
         points,
         identities,
+        operations: Vec::new(),
+        command_registers: None,
+        clock: None,
+        status_bits: BTreeMap::new(),
+        distinct: Vec::new(),
     };
     Ok((table, profile))
 }
@@ -225,6 +230,7 @@ fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileErr
         functions,
         interchangeable_reads: table.interchangeable_reads,
         broadcast_functions,
+        broadcasts_marked_only: false,
         loopback_data,
         read_registers: source.bounded(
             table.read_registers.as_ref(),

@@ -11,6 +11,7 @@
 //! * [`plan`]: which requests fetch a set of points in the least time on this line.
 //! * [`value`]: what a point's registers mean.
 //! * [`encoding`]: which registers mean that.
+//! * [`writing`]: what may be written, and what a meter does when it is told to.
 
 pub mod advice;
 pub mod builtin;
@@ -28,6 +29,7 @@ pub mod scaling;
 pub mod selector;
 pub mod setup;
 pub mod value;
+pub mod writing;
 
 pub use encoding::EncodeError;
 pub use error::ProfileError;
@@ -37,3 +39,4 @@ pub use plan::Plan;
 pub use point::Point;
 pub use setup::{Scales, Setup};
 pub use value::{Missing, Value};
+pub use writing::Operation;

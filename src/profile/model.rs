@@ -1,6 +1,6 @@
 //! A meter, checked and ready to work with.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::time::Duration;
 
@@ -10,6 +10,7 @@ use super::identity::Identity;
 use super::point::Point;
 use super::scaling::Factor;
 use super::setup::needed;
+use super::writing::{ClockPoints, CommandRegisters, Distinct, Operation};
 use crate::codec::{FunctionCode, ReadFunction, RegisterBlock, RegisterRange, UnitRange};
 use crate::transport::LineSettings;
 
@@ -36,6 +37,16 @@ pub struct Profile {
     pub points: Vec<Point>,
     /// What must hold between the values of points, whatever the load.
     pub identities: Vec<Identity>,
+    /// What it does when it is told to, by number where it has numbers.
+    pub operations: Vec<Operation>,
+    /// The registers that take operations by their number.
+    pub command_registers: Option<CommandRegisters>,
+    /// The points that set its clock.
+    pub clock: Option<ClockPoints>,
+    /// Names of the bits that function 07 answers, by their masks.
+    pub status_bits: BTreeMap<u8, String>,
+    /// Points of which no two may hold the same.
+    pub distinct: Vec<Distinct>,
 }
 
 /// What may be asked of a meter, and how fast.
@@ -49,6 +60,8 @@ pub struct Limits {
     pub interchangeable_reads: bool,
     /// The functions it obeys on address 0.
     pub broadcast_functions: Vec<FunctionCode>,
+    /// Whether it is known to obey them for what is marked alone.
+    pub broadcasts_marked_only: bool,
     /// What function 08, Return Query Data, sends back, on a meter that has it.
     pub loopback_data: LoopbackData,
     /// The most registers in one read, 1 to 125.
@@ -109,6 +122,7 @@ impl Default for Limits {
             ],
             interchangeable_reads: false,
             broadcast_functions: Vec::new(),
+            broadcasts_marked_only: false,
             loopback_data: LoopbackData::Any,
             read_registers: RegisterRange::MOST,
             write_registers: RegisterBlock::MOST,
@@ -160,6 +174,13 @@ impl Profile {
     /// A point by its name.
     pub fn point(&self, name: &str) -> Option<&Point> {
         self.points.iter().find(|point| point.name == name)
+    }
+
+    /// An operation by its name.
+    pub fn operation(&self, name: &str) -> Option<&Operation> {
+        self.operations
+            .iter()
+            .find(|operation| operation.name == name)
     }
 
     /// The names of the points that must be read to make sense of this one.

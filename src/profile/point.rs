@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::scaling::{Band, Scaling, span_step, times, within};
 use super::setup::Scales;
 use super::value::{Missing, Value};
+use super::writing::Writing;
 use crate::codec::value::{self, ByteOrder, Raw, RegisterType, ValueError};
 use crate::codec::{ReadFunction, RegisterRange};
 
@@ -49,6 +50,8 @@ pub struct Point {
     pub alone: bool,
     /// The one function it can be read with; `None` leaves the choice to the meter's limits.
     pub function: Option<ReadFunction>,
+    /// What is to be known before it is written: see [`Point::writing`].
+    pub writing: Option<Box<Writing>>,
     /// Its address and scale were read in the maker's manual, not worked out or taken from a driver.
     pub verified: bool,
     /// Page of the manual.
@@ -71,6 +74,11 @@ impl Access {
     /// Whether it can be read.
     pub const fn readable(self) -> bool {
         !matches!(self, Self::Write)
+    }
+
+    /// Whether it can be written.
+    pub const fn writable(self) -> bool {
+        !matches!(self, Self::Read)
     }
 }
 
@@ -146,6 +154,7 @@ impl Point {
             only_with: None,
             alone: false,
             function: None,
+            writing: None,
             verified: true,
             page: String::new(),
         }
@@ -195,6 +204,14 @@ impl Point {
             Raw::Text(text) => Ok(Value::Text(text)),
             Raw::Time(time) => Ok(Value::Text(format!("{time:.3}"))),
             Raw::Date(date) => Ok(Value::Text(date.to_string())),
+        }
+    }
+
+    /// The name of a code; `None` when it has none.
+    pub fn label(&self, code: u16) -> Option<&str> {
+        match &self.labels {
+            Labels::Codes(names) => names.get(&code).map(String::as_str),
+            Labels::Bits(_) | Labels::None => None,
         }
     }
 

@@ -96,6 +96,7 @@ fn point(
             .as_ref()
             .map(|code| read_function(source, code, limits, &key("function")))
             .transpose()?,
+        writing: None,
         verified: row.verified,
         page: row.page.clone(),
         name,
