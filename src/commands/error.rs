@@ -5,13 +5,16 @@ use std::io;
 use thiserror::Error;
 
 use crate::codec::{AddressError, Unit};
+use crate::profile::assignment::AssignError;
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
+use crate::profile::write_plan::WritePlanError;
 use crate::sim::values::ValuesError;
 use crate::transport::faulty::FaultScriptError;
 use crate::transport::listen::ListenError;
 use crate::transport::ports::ListError;
 use crate::transport::{OpenError, PtyError, TransportError};
+use crate::writing::before::NotNow;
 
 /// Why a command cannot do its work at all.
 #[derive(Debug, Error)]
@@ -28,6 +31,38 @@ pub enum CommandError {
         /// The name.
         name: String,
     },
+    /// What was typed is nothing that can be written.
+    #[error(transparent)]
+    Assign(#[from] AssignError),
+    /// The meter does not take it like that.
+    #[error(transparent)]
+    WritePlan(#[from] WritePlanError),
+    /// The meter does not take it as it is now.
+    #[error("{0}; nothing was sent")]
+    NotNow(#[from] NotNow),
+    /// What changes how the meter is reached, before something else that is written.
+    #[error("{name} changes how the meter is reached, and something is to be written after it")]
+    MovesFirst {
+        /// The point.
+        name: String,
+    },
+    /// A request that follows from the setup of a meter.
+    #[error("{name} is scaled by what the meter is set up for, which nothing tells unread")]
+    NeedsMeter {
+        /// The point.
+        name: String,
+    },
+    /// Something hazardous, and nobody to ask.
+    #[error("{name} {hazard}, and there is no terminal to ask at; nothing was sent")]
+    NeedsYes {
+        /// The point or operation.
+        name: String,
+        /// What it does.
+        hazard: String,
+    },
+    /// Somebody was asked and did not say yes.
+    #[error("not confirmed; nothing was sent")]
+    Declined,
     /// An option that has no effect on what was asked for.
     #[error("{option} is for {what}")]
     NoEffect {

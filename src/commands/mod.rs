@@ -2,9 +2,11 @@
 //! line and the rest.
 
 mod asking;
+mod careful;
 mod completions;
 mod error;
 mod exit_code;
+mod fates;
 mod logging;
 mod loopback;
 mod meters;
@@ -12,10 +14,12 @@ mod open_line;
 mod ports;
 mod read_registers;
 mod report;
+mod setpoints;
 mod show_plan;
 mod signals;
 mod simulate;
 mod trouble;
+mod write_setpoint;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -38,6 +42,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let mut report = Report::new(arguments.verbosity.quiet);
     let result = match arguments.command {
         Command::ReadRegisters(arguments) => read_registers::run(&arguments, &mut report),
+        Command::WriteSetpoint(arguments) => write_setpoint::run(&arguments, &mut report),
+        Command::Broadcast(_) | Command::ExecuteOperation(_) | Command::ReadStatus(_) => {
+            todo!()
+        }
         Command::Loopback(arguments) => loopback::run(&arguments, &mut report),
         Command::Meters(arguments) => meters::run(&arguments, &mut report),
         Command::Ports => ports::list(&report),

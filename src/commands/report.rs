@@ -11,8 +11,10 @@ use crate::cli::Usage;
 use crate::client::Failure;
 use crate::codec::{AddressError, ExceptionCode};
 use crate::output::escape;
+use crate::profile::assignment::AssignError;
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
+use crate::profile::write_plan::WritePlanError;
 use crate::readings::Trouble;
 use crate::transport::holder::Holders;
 use crate::transport::listen::ListenError;
@@ -115,6 +117,36 @@ impl Report {
         self.hint(failure_hint(failure).map(str::to_owned));
     }
 
+    /// Prints what was done.
+    pub(super) fn success(&self, text: &str) {
+        if !self.quiet {
+            // As readings are: stdout is what was asked for.
+            let _ = writeln!(io::stdout(), "{}", escape(text));
+        }
+    }
+
+    /// Prints something that is to be known before something is done.
+    pub(super) fn warning(&self, text: &str) {
+        say(format_args!("warning: {text}"));
+    }
+
+    /// Prints something that went wrong.
+    pub(super) fn problem(&self, place: &str, text: &str) {
+        say(format_args!("error: {place}: {text}"));
+    }
+
+    /// Prints that a meter has refused to be written to.
+    pub(super) fn refused(&mut self, place: &str, code: ExceptionCode) {
+        say(format_args!("error: {place}: the meter refused: {code}"));
+        self.hint(write_hint(code).map(str::to_owned));
+    }
+
+    /// Prints that a write was sent, and why nothing is known of it.
+    pub(super) fn unknown(&mut self, place: &str, failure: &Failure) {
+        say(format_args!("error: {place}: {failure}"));
+        causes(failure);
+    }
+
     /// Prints what to try.
     pub(super) fn advise(&mut self, hint: &str) {
         self.hint(Some(hint.to_owned()));
@@ -138,6 +170,9 @@ impl Report {
 
 /// Prints that units were not asked because the port is gone.
 pub(super) fn untried_units(count: usize) {
+    if count == 0 {
+        return;
+    }
     let (units, were) = if count == 1 {
         ("unit", "was")
     } else {
@@ -164,6 +199,13 @@ const fn exit_code(error: &CommandError) -> ExitCode {
     match error {
         CommandError::Unit(_)
         | CommandError::Select(_)
+        | CommandError::Assign(_)
+        | CommandError::WritePlan(_)
+        | CommandError::NotNow(_)
+        | CommandError::MovesFirst { .. }
+        | CommandError::NeedsMeter { .. }
+        | CommandError::NeedsYes { .. }
+        | CommandError::Declined
         | CommandError::ColumnClash { .. }
         | CommandError::Function { .. }
         | CommandError::NoEffect { .. }
@@ -192,11 +234,32 @@ const fn exit_code(error: &CommandError) -> ExitCode {
 
 fn hint(error: &CommandError) -> Option<String> {
     let text = match error {
-        CommandError::Unit(AddressError::UnitZero) => "a read needs one meter: --unit 1 to 247",
+        CommandError::Unit(AddressError::UnitZero) => {
+            "0 is the address of all meters at once, and none answers it: `meterpoll broadcast` \
+             writes to them"
+        }
         CommandError::Unit(_) => {
             "units go to 247; to 255 only for meters whose profile says so, such as --meter pqm"
         }
-        CommandError::Select(error) => return select_hint(error),
+        CommandError::Select(error) | CommandError::Assign(AssignError::Select(error)) => {
+            return select_hint(error);
+        }
+        CommandError::Assign(AssignError::NoValue { .. } | AssignError::Nothing) => {
+            "values are written ct_primary=200 or 0x1028=500"
+        }
+        CommandError::Assign(AssignError::Several { .. }) => {
+            "name each point with its value, such as tariff_1_cost=1 tariff_2_cost=1"
+        }
+        CommandError::Assign(AssignError::NotOne { .. }) => "name the points, each with its value",
+        CommandError::WritePlan(WritePlanError::Function { .. }) => {
+            "leave --function out: the meter's own is taken"
+        }
+        CommandError::WritePlan(WritePlanError::TooMany { .. }) => "write them in several calls",
+        CommandError::MovesFirst { .. } => "write it last, or by itself",
+        CommandError::NeedsMeter { .. } => {
+            "give the register's own number, 0x and its digits, or leave --dry-run out"
+        }
+        CommandError::NeedsYes { .. } => "--yes says that it is meant",
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
@@ -302,6 +365,20 @@ fn open_hint(error: &OpenError) -> Option<String> {
         _ => return None,
     };
     Some(text.to_owned())
+}
+
+/// What to make of a meter that refuses to be written to.
+fn write_hint(code: ExceptionCode) -> Option<&'static str> {
+    Some(match code {
+        ExceptionCode::ILLEGAL_FUNCTION => {
+            "the meter may take the other function, --function 6 or 16"
+        }
+        ExceptionCode::ILLEGAL_DATA_ADDRESS => {
+            "the meter has no such registers, or none that can be written"
+        }
+        ExceptionCode::ILLEGAL_DATA_VALUE => "the meter does not take this value, or not now",
+        _ => return failure_hint(&Failure::Exception(code)),
+    })
 }
 
 pub(super) fn failure_hint(failure: &Failure) -> Option<&'static str> {

@@ -16,6 +16,8 @@ pub struct Writing {
     pub hazard: Option<String>,
     /// It does something when it is written, and does not keep what was written.
     pub momentary: bool,
+    /// It changes how the meter is reached: its address, or the setting of its port.
+    pub moves: bool,
     /// The raw number is a multiple of this; 0 or 1 says nothing.
     pub step: u16,
     /// The only raw numbers it takes, where these are no range.
@@ -36,6 +38,7 @@ pub struct Writing {
 static PLAIN: Writing = Writing {
     hazard: None,
     momentary: false,
+    moves: false,
     step: 0,
     allowed: Vec::new(),
     also: Vec::new(),
