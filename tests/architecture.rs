@@ -90,6 +90,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
         &[
             "profile/advice/",
             "profile/format.rs",
+            "profile/format/",
             "profile/load.rs",
             "profile/load/",
         ],

@@ -99,6 +99,16 @@ pub struct Operation {
     pub page: String,
 }
 
+impl Operation {
+    /// What goes with it, as a point.
+    pub fn data(&self) -> Option<&Point> {
+        match &self.action {
+            Action::Number { data, .. } => data.as_deref(),
+            Action::Register { .. } => None,
+        }
+    }
+}
+
 /// How a meter is told to do something.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Action {
