@@ -24,7 +24,7 @@ fn unit_0_cannot_be_read() {
         .code(2)
         .stderr(
             "error: unit 0 is the broadcast address, which no meter answers\n\
-             hint: a read needs one meter: --unit 1 to 247\n",
+             hint: meters are 1 to 247; `meterpoll broadcast` writes to all of them at once\n",
         )
         .run();
 }

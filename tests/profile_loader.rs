@@ -35,7 +35,7 @@ fn refused(text: &str, message: &str) {
 }
 
 const POINT_KEYS: &str = "name, address, repeat, type, order, scale, span, unit, about, access, range, \
-                          labels, no_value, only_with, alone, function, hazard, momentary, step, \
+                          labels, no_value, only_with, alone, function, hazard, momentary, moves, step, \
                           allowed, also, write_function, broadcast, writable_with, shown_by, \
                           verified, page";
 

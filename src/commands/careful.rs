@@ -53,11 +53,10 @@ impl Consent {
         let Self::Ask(hazards) = self else {
             return Ok(());
         };
-        let mut question = String::new();
-        for Hazard { name, what } in hazards {
-            question += &format!("{name} {what}\n");
-        }
-        question += &format!("Do this to {whom}? Type yes: ");
+        let hazards = hazards.iter();
+        let lines = hazards.flat_map(|Hazard { name, what }| [name, " ", what, "\n"]);
+        let question = lines.chain(["Do this to ", whom, "? Type yes: "]);
+        let question: String = question.collect();
         let mut answer = String::new();
         let mut terminal = io::stderr().lock();
         let asked = write!(terminal, "{}", escape_lines(&question)).and_then(|()| terminal.flush());

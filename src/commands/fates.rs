@@ -1,7 +1,7 @@
 //! What became of writes, in words and exit codes.
 
 use super::ExitCode;
-use super::report::Report;
+use super::report::{self, Report};
 use crate::client::Unwritten;
 use crate::readings::Fault;
 use crate::writing::{Fate, Unread};
@@ -59,7 +59,7 @@ pub(super) fn tell(deed: &Deed<'_>, fate: &Fate, report: &mut Report) -> ExitCod
         }
         Fate::Confirmed(Unread::Failed(fault)) => {
             let text = format!("confirmed by the meter, but reading it back failed ({fault})");
-            report.problem(&format!("{place}, {name}"), &text);
+            report::problem(&format!("{place}, {name}"), &text);
             deed.advise(report);
             ExitCode::WriteUnknown
         }
@@ -77,19 +77,19 @@ pub(super) fn tell(deed: &Deed<'_>, fate: &Fate, report: &mut Report) -> ExitCod
         Fate::Accepted => {
             let text = "not confirmed: the meter has taken it and is still at work (05 \
                         ACKNOWLEDGE); it was not sent again";
-            report.problem(&format!("{place}, {name}"), text);
+            report::problem(&format!("{place}, {name}"), text);
             deed.advise(report);
             ExitCode::WriteUnknown
         }
         Fate::Otherwise(found) => {
             let text = format!("was {}, and the meter holds {found}", deed.done);
-            report.problem(&format!("{place}, {}", deed.what), &text);
+            report::problem(&format!("{place}, {}", deed.what), &text);
             report.advise("the meter keeps it within its own limits, or something else sets it");
             ExitCode::WriteUnknown
         }
         Fate::NotTried => {
             let text = format!("not {}: something before it was not", deed.done);
-            report.problem(&format!("{place}, {name}"), &text);
+            report::problem(&format!("{place}, {name}"), &text);
             ExitCode::Done
         }
         Fate::Unwritten(why) => deed.unwritten(why, report),
@@ -98,7 +98,7 @@ pub(super) fn tell(deed: &Deed<'_>, fate: &Fate, report: &mut Report) -> ExitCod
                 "the first of its registers are {}, the others are not known to be",
                 deed.done
             );
-            report.problem(&format!("{place}, {name}"), &text);
+            report::problem(&format!("{place}, {name}"), &text);
             deed.unwritten(why, report);
             ExitCode::WriteUnknown
         }
@@ -119,7 +119,7 @@ impl Deed<'_> {
             }
             Unwritten::Unknown(failure) => {
                 let place = format!("{at}: outcome unknown, it may be {} or not", self.done);
-                report.unknown(&place, failure);
+                report::unknown(&place, failure);
                 self.advise(report);
                 ExitCode::WriteUnknown
             }

@@ -125,26 +125,10 @@ impl Report {
         }
     }
 
-    /// Prints something that is to be known before something is done.
-    pub(super) fn warning(&self, text: &str) {
-        say(format_args!("warning: {text}"));
-    }
-
-    /// Prints something that went wrong.
-    pub(super) fn problem(&self, place: &str, text: &str) {
-        say(format_args!("error: {place}: {text}"));
-    }
-
     /// Prints that a meter has refused to be written to.
     pub(super) fn refused(&mut self, place: &str, code: ExceptionCode) {
         say(format_args!("error: {place}: the meter refused: {code}"));
         self.hint(write_hint(code).map(str::to_owned));
-    }
-
-    /// Prints that a write was sent, and why nothing is known of it.
-    pub(super) fn unknown(&mut self, place: &str, failure: &Failure) {
-        say(format_args!("error: {place}: {failure}"));
-        causes(failure);
     }
 
     /// Prints what to try.
@@ -181,6 +165,22 @@ pub(super) fn untried_units(count: usize) {
     say(format_args!("error: {count} more {units} {were} not tried"));
 }
 
+/// Prints something that is to be known before something is done.
+pub(super) fn warning(text: &str) {
+    say(format_args!("warning: {text}"));
+}
+
+/// Prints something that went wrong.
+pub(super) fn problem(place: &str, text: &str) {
+    say(format_args!("error: {place}: {text}"));
+}
+
+/// Prints that something was sent, and why nothing is known of it.
+pub(super) fn unknown(place: &str, failure: &Failure) {
+    say(format_args!("error: {place}: {failure}"));
+    causes(failure);
+}
+
 /// Writes a line to stderr, made safe for a terminal: it may quote a file or a meter. Where stderr
 /// does not take it, there is nobody to tell, and the readings still go out.
 fn say(line: fmt::Arguments<'_>) {
@@ -206,6 +206,20 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::NeedsMeter { .. }
         | CommandError::NeedsYes { .. }
         | CommandError::Declined
+        | CommandError::NoOperations { .. }
+        | CommandError::NoOperation { .. }
+        | CommandError::TakesNothing { .. }
+        | CommandError::Lacks { .. }
+        | CommandError::CarriesNothing { .. }
+        | CommandError::Carrier { .. }
+        | CommandError::BroadcastRead { .. }
+        | CommandError::BroadcastUnknown
+        | CommandError::NoBroadcast { .. }
+        | CommandError::BroadcastFunction { .. }
+        | CommandError::NotBroadcast { .. }
+        | CommandError::BroadcastOnly { .. }
+        | CommandError::NoClock { .. }
+        | CommandError::NoMoment { .. }
         | CommandError::ColumnClash { .. }
         | CommandError::Function { .. }
         | CommandError::NoEffect { .. }
@@ -235,8 +249,7 @@ const fn exit_code(error: &CommandError) -> ExitCode {
 fn hint(error: &CommandError) -> Option<String> {
     let text = match error {
         CommandError::Unit(AddressError::UnitZero) => {
-            "0 is the address of all meters at once, and none answers it: `meterpoll broadcast` \
-             writes to them"
+            "meters are 1 to 247; `meterpoll broadcast` writes to all of them at once"
         }
         CommandError::Unit(_) => {
             "units go to 247; to 255 only for meters whose profile says so, such as --meter pqm"
@@ -255,11 +268,25 @@ fn hint(error: &CommandError) -> Option<String> {
             "leave --function out: the meter's own is taken"
         }
         CommandError::WritePlan(WritePlanError::TooMany { .. }) => "write them in several calls",
-        CommandError::MovesFirst { .. } => "write it last, or by itself",
+        CommandError::MovesFirst { .. } => "write what changes that last, or by itself",
         CommandError::NeedsMeter { .. } => {
             "give the register's own number, 0x and its digits, or leave --dry-run out"
         }
         CommandError::NeedsYes { .. } => "--yes says that it is meant",
+        CommandError::NoOperation { near, .. } if !near.is_empty() => return None,
+        CommandError::NoOperation { .. } => "`execute-operation --list` shows them",
+        CommandError::CarriesNothing { .. } => "leave --function out, or give 16",
+        CommandError::BroadcastRead { .. } => {
+            "give points and values, NAME=VALUE, or the name of one operation"
+        }
+        CommandError::BroadcastUnknown => "name the meter with --meter, or send it with --force",
+        CommandError::NotBroadcast { .. } => {
+            "--force sends it all the same; --verify-units shows which meters have taken it"
+        }
+        CommandError::BroadcastOnly { .. } => "`meterpoll broadcast` writes it",
+        CommandError::NoMoment { .. } => {
+            "give now, or a date and time such as 2026-11-22T13:27:10.015"
+        }
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }

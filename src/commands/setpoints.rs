@@ -4,10 +4,10 @@
 use super::CommandError;
 use super::careful::Hazard;
 use crate::cli::{NumberingChoice, WriteFunctionChoice};
-use crate::profile::assignment::{Assignment, alike, assignments};
+use crate::profile::assignment::{Assignment, alike, apart, assignments};
 use crate::profile::selector::{Numbering, Purpose, Reading};
 use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, plan};
-use crate::profile::writing::{Distinct, WriteFunction};
+use crate::profile::writing::{Broadcasting, Distinct, WriteFunction};
 use crate::profile::{Point, Profile, Scales, Setup};
 use crate::writing::before::{allowed, distinct};
 
@@ -36,11 +36,15 @@ impl<'a> Job<'a> {
             profile,
             rules,
         };
-        if let [before @ .., _] = job.assignments.as_slice()
-            && let Some(moving) = before.iter().find(|assignment| assignment.writing().moves)
+        apart(&job.assignments)?;
+        let moves = |assignment: &&Assignment| assignment.writing().moves;
+        let mut rest = job.assignments.iter().skip_while(|one| !moves(one));
+        if let Some(moving) = rest.next()
+            && let Some(after) = rest.find(|one| !moves(one))
         {
             return Err(CommandError::MovesFirst {
                 name: moving.point.name.clone(),
+                after: after.point.name.clone(),
             });
         }
         let mut known = Vec::new();
@@ -54,6 +58,19 @@ impl<'a> Job<'a> {
             plan(&known, &job.rules)?;
         }
         Ok(job)
+    }
+
+    /// The same for units one by one.
+    ///
+    /// # Errors
+    /// [`CommandError::BroadcastOnly`] for what is only broadcast.
+    pub(super) fn one_by_one(self) -> Result<Self, CommandError> {
+        let only = |point: &&Point| point.writing().broadcast == Broadcasting::Only;
+        let found = self.points().find(only).map(|point| point.name.clone());
+        match found {
+            Some(name) => Err(CommandError::BroadcastOnly { name }),
+            None => Ok(self),
+        }
     }
 
     /// The changes, on a meter that is set up like this, and the requests that make them.

@@ -4,7 +4,7 @@ use super::asking::{Asking, units};
 use super::careful::Consent;
 use super::fates::{self, Deed, Outcome};
 use super::open_line::LinePlan;
-use super::report::Report;
+use super::report::{self, Report};
 use super::setpoints::{Job, insisted, typed};
 use super::signals::Stop;
 use super::{CommandError, ExitCode, print};
@@ -29,7 +29,7 @@ pub(super) fn run(
     let units = units(&arguments.unit, &limits)?;
     let assignments = typed(&arguments.what, arguments.numbering, profile)?;
     let rules = WriteRules::new(profile).insisting(insisted(arguments.function));
-    let job = Job::new(assignments, profile, rules)?;
+    let job = Job::new(assignments, profile, rules)?.one_by_one()?;
     if arguments.care.dry_run {
         let (_, planned) = job.ready_unread()?;
         return print(frames(&units, &planned).as_bytes());
@@ -91,7 +91,7 @@ impl Task<'_> {
             let is_lost = self.unit(unit, client, report)?;
             let rest = units.len() - index - 1;
             if is_lost || self.is_stopped() {
-                super::report::untried_units(rest);
+                report::untried_units(rest);
                 break;
             }
         }
@@ -189,13 +189,13 @@ impl Task<'_> {
             print(format!("# {meter}{place}\n{}", table(&lines)).as_bytes())?;
         }
         if let Some(failure) = before.failure() {
-            report.warning(&format!(
+            report::warning(&format!(
                 "{place}: what it holds now could not be read ({failure}); it is written all the same"
             ));
         }
         for index in in_pieces(planned, changes.len()) {
             if let Some(change) = changes.get(index) {
-                report.warning(&format!(
+                report::warning(&format!(
                     "{} goes in {} requests, low word first, for the meter writes one register at a \
                      time: in between it holds half of it",
                     change.point.name,

@@ -8,7 +8,9 @@ pub mod columns;
 pub mod csv;
 pub mod json;
 pub mod loopback;
+pub mod operations;
 pub mod profile;
+pub mod status;
 pub mod table;
 pub mod verification;
 

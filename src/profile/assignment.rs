@@ -65,7 +65,7 @@ pub enum AssignError {
         /// The point.
         name: String,
         /// What is wrong.
-        problem: EncodeError,
+        problem: Box<EncodeError>,
     },
     /// Not a value that the meter takes.
     #[error("{name}: {problem}")]
@@ -73,7 +73,7 @@ pub enum AssignError {
         /// The point.
         name: String,
         /// What it takes.
-        problem: NotTaken,
+        problem: Box<NotTaken>,
     },
     /// Two points that may not hold the same get the same value.
     #[error("{first} and {second} would hold the same: {about}")]
@@ -103,21 +103,32 @@ pub fn assignments(typed: &[String], reading: Reading<'_>) -> Result<Vec<Assignm
     if typed.is_empty() {
         return Err(AssignError::Nothing);
     }
-    let mut all: Vec<Assignment> = Vec::with_capacity(typed.len());
-    for typed in typed {
-        let assignment = assignment(typed, reading)?;
-        let clash = all
+    typed
+        .iter()
+        .map(|typed| assignment(typed, reading))
+        .collect()
+}
+
+/// Whether each register is given one value.
+///
+/// # Errors
+/// [`AssignError::Twice`] names two points that share one.
+pub fn apart(assignments: &[Assignment]) -> Result<(), AssignError> {
+    let mut rest = assignments;
+    while let [first, others @ ..] = rest {
+        let range = first.point.range;
+        if let Some(other) = others
             .iter()
-            .find(|other| other.point.range.overlaps(assignment.point.range));
-        if let Some(other) = clash {
+            .find(|other| other.point.range.overlaps(range))
+        {
             return Err(AssignError::Twice {
-                first: other.point.name.clone(),
-                second: assignment.point.name.clone(),
+                first: first.point.name.clone(),
+                second: other.point.name.clone(),
             });
         }
-        all.push(assignment);
+        rest = others;
     }
-    Ok(all)
+    Ok(())
 }
 
 fn assignment(typed: &str, reading: Reading<'_>) -> Result<Assignment, AssignError> {
@@ -174,10 +185,10 @@ fn assignment(typed: &str, reading: Reading<'_>) -> Result<Assignment, AssignErr
 pub fn alike(changes: &[Change], rules: &[Distinct]) -> Result<(), AssignError> {
     for rule in rules {
         let mut given: Vec<(&str, u16)> = Vec::new();
-        let ruled = changes
+        let under_it = changes
             .iter()
             .filter(|change| rule.points.contains(&change.point.name));
-        for change in ruled {
+        for change in under_it {
             let [register] = change.registers.as_slice() else {
                 continue;
             };
@@ -221,6 +232,15 @@ fn known(selector: &str, raw: &Point, profile: &Profile) -> Result<Option<Point>
 }
 
 impl Assignment {
+    /// A value for a point of a meter.
+    pub const fn new(point: Point, value: String) -> Self {
+        Self {
+            point,
+            value,
+            known: None,
+        }
+    }
+
     /// What is to be known before it is written.
     pub fn writing(&self) -> &Writing {
         self.point.writing()
@@ -235,7 +255,7 @@ impl Assignment {
         let registers = self.point.encode(&self.value, scales);
         let registers = registers.map_err(|problem| AssignError::Value {
             name: name(),
-            problem,
+            problem: Box::new(problem),
         })?;
         let rules = self.known.as_deref().unwrap_or(&self.point);
         match rules.takes(&registers) {
@@ -245,7 +265,7 @@ impl Assignment {
             }),
             Err(problem) => Err(AssignError::NotTaken {
                 name: name(),
-                problem,
+                problem: Box::new(problem),
             }),
         }
     }

@@ -206,7 +206,7 @@ impl Point {
     }
 
     /// What can be given, in words.
-    fn expected(&self) -> String {
+    pub fn expected(&self) -> String {
         match self.kind {
             RegisterType::Ascii(most) => {
                 format!("text of at most {most} characters, all of them ASCII")

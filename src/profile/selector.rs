@@ -333,13 +333,16 @@ fn groups(profile: &Profile) -> Vec<String> {
     groups.map(|group| format!("@{}", group.name)).collect()
 }
 
-/// Up to three names that look like `name`, the nearest first.
+/// Up to three names of points that look like `name`, the nearest first.
 pub fn near(name: &str, profile: &Profile) -> Vec<String> {
+    alike(name, profile.points.iter().map(|point| point.name.as_str()))
+}
+
+/// Up to three of these names that look like `name`, the nearest first.
+pub fn alike<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
     const ALIKE: f64 = 0.75;
-    let mut scored: Vec<(f64, &str)> = profile
-        .points
-        .iter()
-        .map(|point| (strsim::jaro_winkler(name, &point.name), point.name.as_str()))
+    let mut scored: Vec<(f64, &str)> = names
+        .map(|known| (strsim::jaro_winkler(name, known), known))
         .filter(|(score, _)| *score >= ALIKE)
         .collect();
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));

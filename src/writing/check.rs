@@ -59,11 +59,26 @@ pub fn check(
                 }
                 (_, Reply::Stored(value)) => Fate::Otherwise(stored(change, value, scales)),
                 (_, Reply::Accepted) => Fate::Accepted,
+                (Some(Err(_)), Reply::Confirmed) if change.point.writing().moves => {
+                    Fate::Confirmed(Unread::Moved)
+                }
                 (Some(Err(fault)), Reply::Confirmed) => Fate::Confirmed(Unread::Failed(fault)),
                 (None, Reply::Confirmed) => Fate::Confirmed(unread),
             }
         })
         .collect()
+}
+
+/// What became of something that leaves nothing to read back.
+pub fn unread(reply: Reply) -> Fate {
+    match reply {
+        Reply::Confirmed => Fate::Confirmed(Unread::Momentary),
+        Reply::Stored(value) => Fate::Otherwise(format!("0x{value:04X}")),
+        Reply::Accepted => Fate::Accepted,
+        Reply::Unwritten(why) => Fate::Unwritten(why),
+        Reply::Torn(why) => Fate::Torn(why),
+        Reply::NotTried => Fate::NotTried,
+    }
 }
 
 impl Reply {
@@ -79,8 +94,6 @@ fn unreadable(point: &Point) -> Option<Unread> {
         Some(Unread::WriteOnly)
     } else if point.writing().momentary {
         Some(Unread::Momentary)
-    } else if point.writing().moves {
-        Some(Unread::Moved)
     } else {
         None
     }

@@ -64,6 +64,7 @@ pub(super) fn writing(
     let writing = Writing {
         hazard: hazard(source, row.hazard.as_ref(), &key("hazard"))?,
         momentary: row.momentary.as_ref().is_some_and(|is| *is.as_ref()),
+        moves: row.moves.as_ref().is_some_and(|is| *is.as_ref()),
         step: row.step.as_ref().map_or(0, |step| *step.as_ref()),
         allowed: numbers.allowed()?,
         also: numbers.also()?,
@@ -86,6 +87,7 @@ fn first_key(row: &PointTable) -> Option<(&'static str, Range<usize>)> {
     let keys = [
         ("hazard", at(row.hazard.as_ref())),
         ("momentary", at(row.momentary.as_ref())),
+        ("moves", at(row.moves.as_ref())),
         ("step", at(row.step.as_ref())),
         ("allowed", at(row.allowed.as_ref())),
         ("also", at(row.also.as_ref())),
