@@ -59,7 +59,7 @@ pub enum EncodeError {
         /// What was given.
         found: String,
         /// The highest raw number.
-        highest: u128,
+        highest: u64,
     },
     /// A number that no raw number gives on a scale that is not the same everywhere.
     #[error("{found} is on no step of {scale}")]

@@ -13,9 +13,9 @@
 //!
 //! [limits]                      # every key can be left out
 //! highest_unit = 247            # 247, or 255 where the meter uses the reserved numbers
-//! functions = [3, 4, 6, 8, 16]  # default [3, 4]
+//! functions = [3, 4, 6, 7, 8, 16]  # default [3, 4]; there is 5 as well
 //! interchangeable_reads = true  # functions 03 and 04 read the same registers; default false
-//! broadcast_functions = [6]     # obeyed on address 0; default none
+//! broadcast_functions = [6, 16] # obeyed on address 0; default none
 //! broadcast = "any"             # what may be written there: any (default), or only what is "marked"
 //! loopback_data = "any"         # what function 08 sends back: any (default) or zero alone
 //! read_registers = 125          # the most in one read, 1 to 125
@@ -118,6 +118,13 @@
 //! type = "u16"
 //! access = "read-write"
 //! allowed = [1, 5, 15]          # the only raw numbers it takes, instead of a step
+//!
+//! [[points]]
+//! name = "channel"
+//! address = 0x1310
+//! type = "u16"
+//! access = "read-write"
+//! repeat = 4
 //!
 //! [[points]]
 //! name = "set_time"

@@ -32,7 +32,8 @@ pub(super) fn from_hex(
         Some(raw) => Ok(raw),
         None => Err(EncodeError::RawRange {
             found: text.to_owned(),
-            highest: most.unsigned_abs(),
+            // No type has more than 64 bits.
+            highest: u64::try_from(most).unwrap_or(u64::MAX),
         }),
     })
 }
