@@ -110,13 +110,13 @@ pub(crate) fn sealed(body: &[u8]) -> Vec<u8> {
 }
 
 /// The answer to a frame, which must be heard; `None` is silence.
-pub(crate) fn answer(meter: &Meter, frame: &[u8], now: Timestamp) -> Option<Vec<u8>> {
+pub(crate) fn answer(meter: &mut Meter, frame: &[u8], now: Timestamp) -> Option<Vec<u8>> {
     let answer = meter.answer(frame, now)?;
     Some(answer.as_bytes().to_vec())
 }
 
 /// The code of the exception that a data unit meets; `None` for a normal response.
-pub(crate) fn exception(meter: &Meter, data_unit: &[u8], now: Timestamp) -> Option<u8> {
+pub(crate) fn exception(meter: &mut Meter, data_unit: &[u8], now: Timestamp) -> Option<u8> {
     let request = sealed(&[&[meter.unit().get()], data_unit].concat());
     let answer = meter.answer(&request, now).expect("an answer");
     match decode_reply(answer.as_bytes()) {
@@ -127,7 +127,12 @@ pub(crate) fn exception(meter: &Meter, data_unit: &[u8], now: Timestamp) -> Opti
 }
 
 /// Reads registers with function 03; the exception code where that is refused.
-pub(crate) fn read(meter: &Meter, start: u16, count: u16, now: Timestamp) -> Result<Vec<u16>, u8> {
+pub(crate) fn read(
+    meter: &mut Meter,
+    start: u16,
+    count: u16,
+    now: Timestamp,
+) -> Result<Vec<u16>, u8> {
     let request = Request::Read {
         function: ReadFunction::HoldingRegisters,
         range: RegisterRange::new(start, count).unwrap(),
@@ -144,12 +149,12 @@ pub(crate) fn read(meter: &Meter, start: u16, count: u16, now: Timestamp) -> Res
 /// Reads every readable point of a meter by itself: it is what the model measures, and it means
 /// something.
 pub(crate) fn every_point_reads_as_what_the_model_measures(
-    meter: &Meter,
+    meter: &mut Meter,
     model: &dyn Model,
     now: Timestamp,
 ) {
     let measured = model.measure(now);
-    for point in &meter.profile().points {
+    for point in &meter.profile().points.clone() {
         let [start, count] = [point.range.start().get(), point.range.count()];
         if !point.access.readable() {
             assert_eq!(read(meter, start, count, now), Err(2), "{}", point.name);
