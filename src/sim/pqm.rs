@@ -274,7 +274,7 @@ impl Reading<'_> {
                 let demand = self.demand.get_or_init(|| self.demand_at(self.now));
                 Content::Number(rounded(demand.get(metered) / step))
             }
-            (Some(statistic), Some(extremes)) => statistic.of(&extremes, step),
+            (Some(statistic), Some(extremes)) => statistic.of(&extremes, 1.0),
             (Some(statistic), None) => statistic.of(load.history().of_demand(metered), step),
         })
     }

@@ -6,6 +6,7 @@ use super::Reading;
 use super::state::Cleared;
 use super::table::{DEMANDS, QUANTITIES};
 use crate::sim::history::{Extremes, since};
+use crate::sim::words::rounded;
 
 type OfQuantities = [Extremes; QUANTITIES.len()];
 
@@ -41,7 +42,7 @@ impl Since {
         Some(reading.by_its_clock(extremes))
     }
 
-    /// Those of a row of [`DEMANDS`], in its unit; `None` when they were never cleared.
+    /// Those of a row of [`DEMANDS`], in steps of its register; `None` when they were never cleared.
     pub(super) fn of_demand(&self, reading: &Reading<'_>, row: usize) -> Option<Extremes> {
         // What is cleared with the running demands is all of them.
         let cleared = [Cleared::MaximumDemand, Cleared::Demand].map(|what| reading.cleared(what));
@@ -49,7 +50,7 @@ impl Since {
         let extremes = self.demand.get_or_init(|| {
             since::extremes(cleared, reading.now, |at| {
                 let demand = reading.demand_at(at);
-                DEMANDS.map(|(_, metered, _)| demand.get(metered))
+                DEMANDS.map(|(_, metered, step)| steps(rounded(demand.get(metered) / step)))
             })
         });
         let extremes = extremes.get(row)?;
