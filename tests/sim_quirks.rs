@@ -197,7 +197,7 @@ fn a_busy_meter_says_so_to_reads_and_writes_of_the_registers_it_is_busy_with() {
 fn a_meter_is_made_when_it_is_first_asked() {
     let is_made = Arc::new(AtomicBool::new(false));
     let making = Arc::clone(&is_made);
-    let meter = Meter::new(unit(), move || {
+    let mut meter = Meter::new(unit(), move || {
         making.store(true, Ordering::SeqCst);
         (load("quirks.toml", PROFILE).unwrap(), Box::new(Quirks))
     });

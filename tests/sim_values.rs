@@ -46,9 +46,9 @@ fn meter(name: &str, number: u16) -> Meter {
 }
 
 /// What a point of a meter reads as.
-fn shown(meter: &Meter, point: &str) -> String {
-    let profile = meter.profile();
-    let registers = |name: &str| {
+fn shown(meter: &mut Meter, point: &str) -> String {
+    let profile = &meter.profile().clone();
+    let mut registers = |name: &str| {
         let range = profile.point(name).unwrap().range;
         read(meter, range.start().get(), range.count(), now()).unwrap()
     };
@@ -63,17 +63,17 @@ fn shown(meter: &Meter, point: &str) -> String {
 #[test]
 fn what_is_given_stays_and_the_rest_moves_with_the_load() {
     let mut meters = [meter("pqm", 17)];
-    let before = shown(&meters[0], "current_b");
+    let before = shown(&mut meters[0], "current_b");
     let file = Values::new(
         "stays",
         "point,value\ncurrent_a,1\nmeter_id,MAIN SWITCH\nfrequency,\nswitch_inputs,switch B\n",
     );
     assert_eq!(file.apply(&mut meters), Ok(()));
-    assert_eq!(shown(&meters[0], "current_a"), "1");
-    assert_eq!(shown(&meters[0], "meter_id"), "MAIN SWITCH");
-    assert_eq!(shown(&meters[0], "switch_inputs"), "switch B");
-    assert_eq!(shown(&meters[0], "current_b"), before);
-    assert_eq!(shown(&meters[0], "frequency").len(), "60.00".len());
+    assert_eq!(shown(&mut meters[0], "current_a"), "1");
+    assert_eq!(shown(&mut meters[0], "meter_id"), "MAIN SWITCH");
+    assert_eq!(shown(&mut meters[0], "switch_inputs"), "switch B");
+    assert_eq!(shown(&mut meters[0], "current_b"), before);
+    assert_eq!(shown(&mut meters[0], "frequency").len(), "60.00".len());
 }
 
 #[test]
@@ -81,9 +81,9 @@ fn a_row_is_for_its_unit_or_for_all() {
     let mut meters = [meter("pqm", 17), meter("pqm", 18), meter("em24", 1)];
     let text = "value,comment,unit_id,point\n1,x,17,current_a\n2,y,18,current_a\n3,,,current_b\n";
     assert_eq!(Values::new("units", text).apply(&mut meters), Ok(()));
-    let currents = |meter| ["current_a", "current_b"].map(|point| shown(meter, point));
-    assert_eq!(currents(&meters[0]), ["1", "3"]);
-    assert_eq!(currents(&meters[1]), ["2", "3"]);
+    let currents = |meter: &mut Meter| ["current_a", "current_b"].map(|point| shown(meter, point));
+    assert_eq!(currents(&mut meters[0]), ["1", "3"]);
+    assert_eq!(currents(&mut meters[1]), ["2", "3"]);
 }
 
 #[test]
@@ -92,8 +92,8 @@ fn a_row_for_all_is_for_those_that_have_its_point() {
         let mut meters = meters.map(|name| meter(name, if name == "pqm" { 17 } else { 1 }));
         let text = "point,value\nhour_counter,12.5\ncurrent_a,7\n0x1018,99\n";
         assert_eq!(Values::new("those", text).apply(&mut meters), Ok(()));
-        for meter in &meters {
-            match meter.profile().name.as_str() {
+        for meter in &mut meters {
+            match meter.profile().name.clone().as_str() {
                 "em24" => assert_eq!(shown(meter, "hour_counter"), "12.50"),
                 _ => assert_eq!(
                     ["current_a", "modbus_address"].map(|point| shown(meter, point)),
@@ -109,7 +109,7 @@ fn registers_by_address_hold_words_wherever_they_are_read() {
     let mut meters = [meter("pqm", 17)];
     let text = "point,value\n0x0240,0x1234\n0x0241,65535\n592,7\n0x0105,9\n";
     assert_eq!(Values::new("words", text).apply(&mut meters), Ok(()));
-    let [meter] = &meters;
+    let [meter] = &mut meters;
     assert_eq!(read(meter, 0x0240, 2, now()), Ok(vec![0x1234, 0xFFFF]));
     assert_eq!(read(meter, 0x0250, 1, now()), Ok(vec![7]));
     // No point names this one.
@@ -121,7 +121,7 @@ fn the_last_row_of_a_point_counts() {
     let mut meters = [meter("em21", 3)];
     let text = "\u{feff}point,value\nvoltage_l1_n,230.1\nvoltage_l1_n,231.5\n";
     assert_eq!(Values::new("last", text).apply(&mut meters), Ok(()));
-    assert_eq!(shown(&meters[0], "voltage_l1_n"), "231.5");
+    assert_eq!(shown(&mut meters[0], "voltage_l1_n"), "231.5");
 }
 
 #[test]
@@ -129,12 +129,12 @@ fn scales_follow_from_the_setup_in_the_file_and_else_from_the_meters_own() {
     let mut meters = [meter("pm290", 2)];
     let own = Values::new("own", "point,value\ncurrent_a,240\nvoltage_a,660.00\n");
     assert_eq!(own.apply(&mut meters), Ok(()));
-    assert_eq!(shown(&meters[0], "current_a"), "240.000");
+    assert_eq!(shown(&mut meters[0], "current_a"), "240.000");
     // Rows of the setup count first, wherever they stand.
     let text = "point,value\ncurrent_a,239.976\nct_primary_current,400\n";
     assert_eq!(Values::new("given", text).apply(&mut meters), Ok(()));
-    assert_eq!(read(&meters[0], 0x0902, 1, now()), Ok(vec![400]));
-    assert_eq!(read(&meters[0], 0x0103, 1, now()), Ok(vec![4999]));
+    assert_eq!(read(&mut meters[0], 0x0902, 1, now()), Ok(vec![400]));
+    assert_eq!(read(&mut meters[0], 0x0103, 1, now()), Ok(vec![4999]));
 }
 
 #[test]
@@ -145,26 +145,22 @@ fn a_meter_without_a_model_holds_what_it_is_given() {
     let mut meters = [kinds::meter(profile, unit(1), 17)];
     let text = "point,value\ncurrent_a,415\n";
     assert_eq!(Values::new("blank", text).apply(&mut meters), Ok(()));
-    assert_eq!(shown(&meters[0], "current_a"), "415");
-    assert_eq!(shown(&meters[0], "current_b"), "0");
+    assert_eq!(shown(&mut meters[0], "current_a"), "415");
+    assert_eq!(shown(&mut meters[0], "current_b"), "0");
 }
 
 #[test]
 fn meters_of_the_usual_units_are_those_of_the_simulated_line() {
-    for known in meterpoll::sim::SimulatedLine::meters(17) {
-        let name = &known.profile().name;
+    for mut known in meterpoll::sim::SimulatedLine::meters(17) {
+        let name = &known.profile().name.clone();
         assert_eq!(kinds::usual_unit(name), u16::from(known.unit().get()));
-        let made = meter(name, known.unit().get().into());
-        for point in known
-            .profile()
-            .points
-            .iter()
-            .filter(|point| point.access.readable())
-        {
+        let mut made = meter(name, known.unit().get().into());
+        let points = known.profile().points.clone();
+        for point in points.iter().filter(|point| point.access.readable()) {
             let [start, count] = [point.range.start().get(), point.range.count()];
-            let registers = read(&known, start, count, now());
+            let registers = read(&mut known, start, count, now());
             assert_eq!(
-                read(&made, start, count, now()),
+                read(&mut made, start, count, now()),
                 registers,
                 "{name} {}",
                 point.name
@@ -175,12 +171,12 @@ fn meters_of_the_usual_units_are_those_of_the_simulated_line() {
 
 #[test]
 fn meters_of_other_units_have_loads_of_their_own() {
-    let [one, other] = [17, 18].map(|unit| meter("pqm", unit));
+    let [mut one, mut other] = [17, 18].map(|unit| meter("pqm", unit));
     assert_ne!(
-        shown(&one, "energy_real_pos"),
-        shown(&other, "energy_real_pos")
+        shown(&mut one, "energy_real_pos"),
+        shown(&mut other, "energy_real_pos")
     );
-    assert_eq!(shown(&other, "modbus_address"), "18");
+    assert_eq!(shown(&mut other, "modbus_address"), "18");
 }
 
 #[test]

@@ -2,7 +2,9 @@
 //!
 //! Names are those of the built-in meters `em21` and `em24`. Register facts follow their protocol
 //! documents, measurements page 8 of both. Values are taken to be those of the primary side; the
-//! pages that could be had do not say so.
+//! pages that could be had do not say so. So they stay as they are when a transformer ratio is
+//! written, as do all others when anything is set up: settings are held, and that is all, but for the
+//! unit and the resets.
 
 mod em21;
 mod em24;
@@ -10,6 +12,7 @@ mod energy;
 mod inputs;
 mod instant;
 mod overflow;
+mod resets;
 
 use std::cell::OnceCell;
 
@@ -18,9 +21,10 @@ use jiff::Timestamp;
 use self::energy::Energy;
 use self::instant::INSTANT;
 use self::overflow::Overflow;
+use self::resets::Resets;
 use super::history::Sums;
 use super::load::{Installation, Load, Values};
-use super::model::{Content, Measured, Model};
+use super::model::{Content, Destiny, Measured, Model, Word};
 use super::powers::Powers;
 use super::wave::{Moment, Random};
 use super::words::rounded;
@@ -42,11 +46,13 @@ enum Kind {
 #[derive(Debug)]
 pub struct Em2x {
     kind: Kind,
-    unit: Unit,
+    unit: u8,
     load: Load,
     /// Of the EM24, up to 10 digits.
     serial_number: u64,
     overflow: Option<Overflow>,
+    /// What has been set to zero.
+    resets: Resets,
 }
 
 impl Em2x {
@@ -64,11 +70,12 @@ impl Em2x {
     fn new(kind: Kind, unit: Unit, installation: Installation, seed: u64) -> Self {
         Self {
             kind,
-            unit,
+            unit: unit.get(),
             load: Load::new(installation, seed),
             // A row of numbers other than the load's.
             serial_number: Random::new(!seed).next() % 10_000_000_000,
             overflow: None,
+            resets: Resets::default(),
         }
     }
 
@@ -81,11 +88,38 @@ impl Em2x {
 }
 
 impl Model for Em2x {
+    fn unit(&self) -> Option<u8> {
+        Some(self.unit)
+    }
+
+    fn destiny(&self, word: &Word<'_>, _: &dyn Fn(&str) -> Option<u16>) -> Destiny {
+        let name = word.point.name.as_str();
+        match (name, self.kind) {
+            _ if name.starts_with("reset_") => Destiny::Told,
+            ("rs485_address", _) if word.point.takes(&[word.value]).is_ok() => Destiny::Told,
+            // "No default is substituted": what is out of range stays so (page 9).
+            (_, Kind::Em21) => Destiny::Anything,
+            (_, Kind::Em24) => em24::destiny(name),
+        }
+    }
+
+    /// 1 resets; any other number in a register of a reset does nothing (EM21 page 10, EM24 page 13).
+    fn tell(&mut self, words: &[Word<'_>], now: Timestamp) {
+        for word in words {
+            match (word.point.name.as_str(), word.value) {
+                ("rs485_address", unit) => self.unit = u8::try_from(unit).unwrap_or(self.unit),
+                (name, 1) => self.resets.reset(name, &self.load, now),
+                _ => {}
+            }
+        }
+    }
+
     fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_> {
         let moment = Moment::of(now);
         let values = self.load.at(moment.seconds());
         Box::new(Reading {
             meter: self,
+            now,
             moment,
             values,
             powers: Powers::of(&values, TENTH, THOUSANDTH),
@@ -98,6 +132,7 @@ impl Model for Em2x {
 /// All that the meter knows at one instant.
 struct Reading<'a> {
     meter: &'a Em2x,
+    now: Timestamp,
     moment: Moment,
     values: Values,
     powers: Powers,
@@ -130,7 +165,7 @@ impl Reading<'_> {
     /// The counters of energy; worked out for the first one that is asked for.
     fn energy(&self) -> &Energy {
         self.energy
-            .get_or_init(|| Energy::of(&self.meter.load, self.moment))
+            .get_or_init(|| self.meter.resets.energy(&self.meter.load, self.moment))
     }
 
     /// The demands of the last quarter of an hour; worked out for the first one that is asked for.

@@ -1,6 +1,9 @@
 //! What a [`Load`] has added up to, its demand, and how low and high it has been.
 //!
-//! One week is worked through in steps of three minutes; every other week is the same again.
+//! One week is worked through in steps of three minutes; every other week is the same again. What
+//! has been since something was cleared is in [`since`].
+
+pub(super) mod since;
 
 use jiff::Timestamp;
 
@@ -89,7 +92,7 @@ const SUMMED: [Quantity; Metered::COUNT] = [
 pub struct Sums([f64; Metered::COUNT]);
 
 impl Sums {
-    const ZERO: Self = Self([0.0; Metered::COUNT]);
+    pub(super) const ZERO: Self = Self([0.0; Metered::COUNT]);
 
     /// The sum of one of them, in its unit times seconds.
     pub const fn get(&self, metered: Metered) -> f64 {
@@ -103,7 +106,8 @@ impl Sums {
         }
     }
 
-    fn since(&self, earlier: &Self) -> Self {
+    /// What has been added since it was `earlier`.
+    pub(super) fn since(&self, earlier: &Self) -> Self {
         let mut sums = *self;
         for (sum, earlier) in sums.0.iter_mut().zip(earlier.0) {
             *sum -= earlier;
@@ -239,9 +243,27 @@ impl History {
 
     /// The mean of each [`Metered`] over its window, which ends now, in its unit.
     pub fn demand(&self, load: &Load, moment: Moment) -> Sums {
+        self.means(load, moment, |window| moment.earlier(window))
+    }
+
+    /// The same, where what was before `cleared` counts as nothing.
+    pub fn demand_since(&self, load: &Load, cleared: Timestamp, now: Timestamp) -> Sums {
+        let moment = Moment::of(now);
+        let age = now.duration_since(cleared).as_secs();
+        self.means(load, moment, |window| {
+            if age < i64::from(window) {
+                Moment::of(cleared)
+            } else {
+                moment.earlier(window)
+            }
+        })
+    }
+
+    /// What has been added from the beginning of each window until now, by its length.
+    fn means(&self, load: &Load, moment: Moment, begin: impl Fn(u32) -> Moment) -> Sums {
         let now = self.sums(load, moment);
         let mean = |window: u32| {
-            let mut mean = now.since(&self.sums(load, moment.earlier(window)));
+            let mut mean = now.since(&self.sums(load, begin(window)));
             for sum in &mut mean.0 {
                 *sum /= f64::from(window);
             }

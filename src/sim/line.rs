@@ -48,6 +48,11 @@ impl SimulatedLine {
         self
     }
 
+    /// Whether a meter on it answers as this unit by now.
+    pub fn has_unit(&self, unit: u8) -> bool {
+        self.meters.iter().any(|meter| meter.unit().get() == unit)
+    }
+
     /// When the next answer begins, on the clock; `None` when there is none to come.
     fn next_due(&self) -> Option<Duration> {
         self.answers.front().map(|(due, _)| *due)
@@ -57,7 +62,7 @@ impl SimulatedLine {
 impl Transport for SimulatedLine {
     fn send(&mut self, frame: &[u8]) -> Result<(), TransportError> {
         let now = self.clock.utc_now();
-        for meter in &self.meters {
+        for meter in &mut self.meters {
             if let Some(answer) = meter.answer(frame, now) {
                 let due = self.clock.now().saturating_add(self.answer_time);
                 self.answers.push_back((due, answer.as_bytes().to_vec()));

@@ -3,6 +3,7 @@
 mod answering;
 mod bank;
 mod fixed;
+mod writing;
 
 use std::sync::LazyLock;
 
@@ -18,6 +19,9 @@ use super::pm290::Pm290;
 use super::pqm::Pqm;
 use crate::codec::{Frame, FunctionCode, Reply, Unit, rtu};
 use crate::profile::{Profile, builtin};
+
+/// The address that all meters hear.
+const BROADCAST: u8 = 0;
 
 /// A meter on the simulated line.
 pub struct Meter {
@@ -105,20 +109,60 @@ impl Meter {
         self.kind.fix(&mut self.fixed, settings, now)
     }
 
-    /// What it answers to the bytes it heard, at the time of day `now`. `None` is silence: the
-    /// CRC is wrong, the frame is cut, or it is for another unit or for all of them.
-    pub fn answer(&self, frame: &[u8], now: Timestamp) -> Option<Frame> {
+    /// Does what the bytes that it heard ask for, at the time of day `now`, and says what it
+    /// answers. `None` is silence: the CRC is wrong, the frame is cut, or it is for another unit or
+    /// for all of them, which is obeyed if it is a write that the meter obeys then.
+    ///
+    /// A write to the setting of its own unit is answered as the unit it was; after that it is the
+    /// other one.
+    pub fn answer(&mut self, frame: &[u8], now: Timestamp) -> Option<Frame> {
         let (address, data_unit) = rtu::open(frame).ok()?;
-        if address != self.unit.get() {
+        let is_broadcast = address == BROADCAST;
+        if !is_broadcast && address != self.unit.get() {
             return None;
         }
         // From 80h on it is the exception response of somebody with the same number.
         let function = FunctionCode::try_from(*data_unit.first()?).ok()?;
-        let reply = match self.kind.obey(function, data_unit, &self.fixed, now) {
+        if is_broadcast && !self.obeys_broadcasts_of(function) {
+            return None;
+        }
+        if self.kind.model.is_silent(now) {
+            return None;
+        }
+        let was = self.unit;
+        let told_before = self.kind.model.unit();
+        let outcome = self.kind.obey(function, data_unit, &mut self.fixed, now);
+        self.answer_as_told(told_before);
+        let reply = match outcome {
+            _ if is_broadcast => return None,
             Ok(response) => Reply::Normal(response),
             Err(Refusal::Exception(code)) => Reply::Exception { function, code },
             Err(Refusal::Silence) => return None,
         };
-        Some(rtu::encode_reply(self.unit, &reply))
+        Some(rtu::encode_reply(was, &reply))
+    }
+
+    fn obeys_broadcasts_of(&self, function: FunctionCode) -> bool {
+        let is_write = matches!(
+            function,
+            FunctionCode::WriteSingleCoil
+                | FunctionCode::WriteSingleRegister
+                | FunctionCode::WriteMultipleRegisters
+        );
+        is_write && {
+            let limits = &self.kind.profile.limits;
+            limits.broadcast_functions.contains(&function)
+        }
+    }
+
+    /// Takes the unit that it has just been told to be, if there is such a unit.
+    fn answer_as_told(&mut self, before: Option<u8>) {
+        let told = self.kind.model.unit();
+        if told != before
+            && let Some(number) = told
+            && let Ok(unit) = Unit::new(number.into(), self.kind.profile.limits.units)
+        {
+            self.unit = unit;
+        }
     }
 }

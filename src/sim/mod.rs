@@ -35,7 +35,7 @@ pub use em2x::Em2x;
 pub use line::SimulatedLine;
 pub use load::{Installation, Load};
 pub use meter::Meter;
-pub use model::{Blank, Content, Measured, Model};
+pub use model::{Blank, Content, Deed, Destiny, Measured, Model, Word};
 pub use pm290::Pm290;
 pub use pqm::Pqm;
 pub use server::Server;

@@ -8,6 +8,7 @@ mod keypad;
 mod powers;
 mod scale;
 mod setup;
+mod writes;
 
 use std::cell::OnceCell;
 
@@ -18,9 +19,10 @@ pub use setup::{Setup, Wiring};
 
 use self::powers::Powers;
 use self::scale::{FullScale, lin3};
+use self::writes::Writes;
 use super::history::{Metered, Sums};
 use super::load::{Installation, Load, Quantity, Values};
-use super::model::{Content, Measured, Model};
+use super::model::{Content, Destiny, Measured, Model, Word};
 use super::wave::Moment;
 use super::words::counter;
 use crate::codec::RegisterRange;
@@ -49,6 +51,7 @@ pub struct Pm290 {
     load: Load,
     setup: Setup,
     keypad: Keypad,
+    writes: Writes,
 }
 
 impl Pm290 {
@@ -59,6 +62,7 @@ impl Pm290 {
             load: Load::new(WORKSHOP, seed),
             setup: Setup::default(),
             keypad: Keypad::Hourly,
+            writes: Writes::default(),
         }
     }
 
@@ -82,12 +86,28 @@ impl Model for Pm290 {
         self.keypad.blocks(range, now)
     }
 
+    fn is_silent(&self, now: Timestamp) -> bool {
+        self.writes.is_restarting(now)
+    }
+
+    fn destiny(&self, word: &Word<'_>, shown: &dyn Fn(&str) -> Option<u16>) -> Destiny {
+        writes::destiny(word, shown)
+    }
+
+    fn tell(&mut self, words: &[Word<'_>], now: Timestamp) {
+        for word in words {
+            self.setup.tell(&word.point.name, word.value);
+            self.writes.tell(word.address, &self.load, now);
+        }
+    }
+
     fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_> {
         let moment = Moment::of(now);
         let values = self.load.at(moment.seconds());
         let full = FullScale::of(self.setup);
         Box::new(Reading {
             meter: self,
+            now,
             moment,
             values,
             full,
@@ -101,6 +121,7 @@ impl Model for Pm290 {
 /// All that the meter knows at one instant.
 struct Reading<'a> {
     meter: &'a Pm290,
+    now: Timestamp,
     moment: Moment,
     values: Values,
     full: FullScale,
@@ -150,13 +171,12 @@ impl Reading<'_> {
     fn demand(&self, point: &str) -> Option<i128> {
         let load = &self.meter.load;
         let power = |watts| Some(lin3(watts, -self.full.power, self.full.power));
+        let writes = &self.meter.writes;
         let running = |metered| {
-            let demand = self
-                .demand
-                .get_or_init(|| load.history().demand(load, self.moment));
+            let demand = self.demand.get_or_init(|| writes.demand(load, self.now));
             power(demand.get(metered))
         };
-        let highest = |metered| load.history().of_demand(metered).highest;
+        let highest = |metered| writes.highest_demand(load, metered, self.now);
         let current = |metered| Some(lin3(highest(metered), 0.0, self.full.current));
         match point {
             "accumulated_active_demand" => running(Metered::RealPower),
@@ -176,7 +196,8 @@ impl Reading<'_> {
             let sums = self
                 .energy
                 .get_or_init(|| load.history().sums(load, self.moment));
-            Some(counter(sums.get(metered) / KILOWATT_HOUR) % COUNTER_END)
+            let counted = sums.get(metered) - self.meter.writes.cleared(metered);
+            Some(counter(counted / KILOWATT_HOUR) % COUNTER_END)
         };
         match point {
             "energy_active_import" => of(Metered::RealPower),

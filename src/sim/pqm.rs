@@ -3,9 +3,12 @@
 //! Names are those of the built-in meter `pqm`. Register facts follow the PQM manual, edition
 //! 3.6x, chapter 7: areas of the memory map pages 197 to 251, formats F22 to F25 page 257.
 
+mod commands;
+mod minmax;
 mod records;
 mod setpoints;
 mod signals;
+mod state;
 mod steady;
 mod table;
 mod words;
@@ -15,16 +18,18 @@ use std::ops::RangeInclusive;
 
 use jiff::{Timestamp, civil};
 
+use self::minmax::Since;
 use self::signals::Signals;
+use self::state::{Cleared, State};
 use self::table::{DEMANDS, HUNDREDTH, QUANTITIES, Statistic, TEN_WATTS};
 use self::words::{date, date_of, time_of};
-use super::history::{Metered, Sums};
-use super::load::{Installation, Load, Values};
-use super::model::{Content, Measured, Model};
+use super::history::{self, Extremes, Metered, Sums, since};
+use super::load::{Installation, Load, Quantity, Values};
+use super::model::{Content, Deed, Destiny, Measured, Model, Word};
 use super::powers::Powers;
-use super::wave::{Moment, Random};
+use super::wave::{Moment, Random, Wave};
 use super::words::{counter, rounded, text};
-use crate::codec::Unit;
+use crate::codec::{ExceptionCode, Unit, Write};
 
 /// What functions 03 and 04 can read: product information; user map and actual values; setpoints. The
 /// command area behind the first is write only.
@@ -47,6 +52,9 @@ pub struct Pqm {
     serial_number: String,
     /// What its setpoint says.
     unit: u8,
+    /// What that says when all settings are lost.
+    first_unit: u8,
+    state: State,
 }
 
 impl Pqm {
@@ -60,6 +68,8 @@ impl Pqm {
             signals: Signals::new(&mut random),
             serial_number: format!("C{number:07}"),
             unit: 17,
+            first_unit: 17,
+            state: State::default(),
         }
     }
 
@@ -67,6 +77,7 @@ impl Pqm {
     #[must_use]
     pub const fn with_unit(mut self, unit: Unit) -> Self {
         self.unit = unit.get();
+        self.first_unit = unit.get();
         self
     }
 
@@ -81,6 +92,7 @@ impl Pqm {
             powers: Powers::of(&values, TEN_WATTS, HUNDREDTH),
             energy: OnceCell::new(),
             demand: OnceCell::new(),
+            since: Since::default(),
         }
     }
 }
@@ -88,6 +100,26 @@ impl Pqm {
 impl Model for Pqm {
     fn areas(&self) -> &[RangeInclusive<u16>] {
         &AREAS
+    }
+
+    fn status(&self, _: Timestamp) -> u8 {
+        self.state.status()
+    }
+
+    fn unit(&self) -> Option<u8> {
+        Some(self.unit)
+    }
+
+    fn destiny(&self, word: &Word<'_>, _: &dyn Fn(&str) -> Option<u16>) -> Destiny {
+        commands::destiny(word)
+    }
+
+    fn tell(&mut self, words: &[Word<'_>], now: Timestamp) {
+        self.obey(words, now);
+    }
+
+    fn command(&mut self, write: &Write, now: Timestamp) -> Option<Result<Deed, ExceptionCode>> {
+        self.carry_out(write, now)
     }
 
     fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_> {
@@ -104,6 +136,7 @@ struct Reading<'a> {
     powers: Powers,
     energy: OnceCell<(Sums, Sums)>,
     demand: OnceCell<Sums>,
+    since: Since,
 }
 
 impl Measured for Reading<'_> {
@@ -111,7 +144,8 @@ impl Measured for Reading<'_> {
         self.product(point)
             .or_else(|| self.clock(point))
             .or_else(|| self.live(point))
-            .or_else(|| records::content(point, self.moment))
+            .or_else(|| self.lights(point))
+            .or_else(|| records::content(point, self.moment, &self.pqm.state))
             .or_else(|| steady::content(point))
             .or_else(|| setpoints::content(point))
             .or_else(|| self.event(point))
@@ -143,15 +177,25 @@ impl Reading<'_> {
 
     fn clock(&self, point: &str) -> Option<Content> {
         Some(match point {
-            "clock_time" => time_of(self.now),
-            "clock_date" => date_of(self.now),
+            "clock_time" => time_of(self.pqm.state.by_its_clock(self.now)),
+            "clock_date" => date_of(self.pqm.state.by_its_clock(self.now)),
             _ => return None,
         })
     }
 
+    /// Relays, and the lights that tell of them.
+    fn lights(&self, point: &str) -> Option<Content> {
+        let state = &self.pqm.state;
+        Some(Content::Number(match point {
+            "output_relays" => state.relays().into(),
+            "led_status" | "led_attribute" => state.lights().into(),
+            _ => return None,
+        }))
+    }
+
     /// What changes with the load.
     fn live(&self, point: &str) -> Option<Content> {
-        let signal = || self.pqm.signals.content(point, self.moment.seconds());
+        let signal = || self.signal(point);
         self.energy(point)
             .or_else(|| self.measured(point))
             .or_else(signal)
@@ -160,7 +204,10 @@ impl Reading<'_> {
     /// What has been recorded of the event.
     fn event(&self, point: &str) -> Option<Content> {
         let point = point.strip_prefix("event_")?;
-        self.pqm.read(records::event()).live(point)
+        let was = self.pqm.read(records::event()).live(point)?;
+        // Nothing has happened since the record was cleared.
+        let is_cleared = self.cleared(Cleared::Events).is_some();
+        Some(if is_cleared { Content::Number(0) } else { was })
     }
 
     fn energy(&self, point: &str) -> Option<Content> {
@@ -181,39 +228,93 @@ impl Reading<'_> {
         })
     }
 
-    /// What has added up until now and until a day ago; worked out for the first counter that is
-    /// asked for.
+    /// What has added up until now and until a day ago, since it was cleared; worked out for the
+    /// first counter that is asked for.
     fn sums(&self) -> &(Sums, Sums) {
         self.energy.get_or_init(|| {
             let load = &self.pqm.load;
             let until = |moment| load.history().sums(load, moment);
-            (until(self.moment), until(self.moment.earlier(DAY)))
+            let (now, day_ago) = (self.moment, self.moment.earlier(DAY));
+            let Some(cleared) = self.cleared(Cleared::Energy) else {
+                return (until(now), until(day_ago));
+            };
+            let before = until(Moment::of(cleared));
+            let is_of_today = self.now.duration_since(cleared).as_secs() < DAY.into();
+            let day_ago = if is_of_today {
+                Sums::ZERO
+            } else {
+                until(day_ago).since(&before)
+            };
+            (until(now).since(&before), day_ago)
         })
+    }
+
+    /// When this was cleared, where that was before now.
+    fn cleared(&self, what: Cleared) -> Option<Timestamp> {
+        let cleared = self.pqm.state.cleared(what);
+        cleared.filter(|cleared| *cleared <= self.now)
     }
 
     /// A measured point, or the minimum or maximum of one, or when that was.
     fn measured(&self, point: &str) -> Option<Content> {
         let load = &self.pqm.load;
         let (name, statistic) = Statistic::split(point);
-        if let Some((_, quantity, step)) = QUANTITIES.iter().find(|(row, ..)| *row == name) {
-            return Some(match statistic {
-                None => Content::Number(
-                    self.powers
-                        .get(*quantity)
-                        .unwrap_or_else(|| rounded(self.values.get(*quantity) / step)),
-                ),
-                Some(statistic) => statistic.of(load.history().of_quantity(*quantity), *step),
+        if let Some(row) = QUANTITIES.iter().position(|(row, ..)| *row == name) {
+            let (_, quantity, step) = QUANTITIES[row];
+            return Some(match (statistic, self.since.of_quantity(self, row)) {
+                (None, _) => Content::Number(self.raw(quantity, step)),
+                (Some(statistic), Some(extremes)) => statistic.of(&extremes, 1.0),
+                (Some(statistic), None) => statistic.of(load.history().of_quantity(quantity), step),
             });
         }
-        let (_, metered, step) = DEMANDS.iter().find(|(row, ..)| *row == name)?;
-        Some(match statistic {
-            None => {
-                let demand = self
-                    .demand
-                    .get_or_init(|| load.history().demand(load, self.moment));
-                Content::Number(rounded(demand.get(*metered) / step))
+        let row = DEMANDS.iter().position(|(row, ..)| *row == name)?;
+        let (_, metered, step) = DEMANDS[row];
+        Some(match (statistic, self.since.of_demand(self, row)) {
+            (None, _) => {
+                let demand = self.demand.get_or_init(|| self.demand_at(self.now));
+                Content::Number(rounded(demand.get(metered) / step))
             }
-            Some(statistic) => statistic.of(load.history().of_demand(*metered), *step),
+            (Some(statistic), Some(extremes)) => statistic.of(&extremes, 1.0),
+            (Some(statistic), None) => statistic.of(load.history().of_demand(metered), step),
         })
+    }
+
+    /// The register of a quantity.
+    fn raw(&self, quantity: Quantity, step: f64) -> i128 {
+        let measured = || rounded(self.values.get(quantity) / step);
+        self.powers.get(quantity).unwrap_or_else(measured)
+    }
+
+    /// The demands as they were shown at a moment.
+    fn demand_at(&self, at: Timestamp) -> Sums {
+        let load = &self.pqm.load;
+        match self.cleared(Cleared::Demand) {
+            Some(cleared) if cleared <= at => load.history().demand_since(load, cleared, at),
+            _ => load.history().demand(load, Moment::of(at)),
+        }
+    }
+
+    /// Distortion and the like.
+    fn signal(&self, point: &str) -> Option<Content> {
+        let extremes = |wave: &Wave| match self.cleared(Cleared::Distortion) {
+            None => history::extremes(wave),
+            Some(cleared) => {
+                let value = |at| [wave.at(Moment::of(at).seconds())];
+                let [extremes] = since::extremes(cleared, self.now, value);
+                self.by_its_clock(&extremes)
+            }
+        };
+        let second = self.moment.seconds();
+        self.pqm.signals.content(point, second, extremes)
+    }
+
+    /// The same with times as its clock would have shown them.
+    fn by_its_clock(&self, extremes: &Extremes) -> Extremes {
+        let state = &self.pqm.state;
+        Extremes {
+            lowest_at: state.by_its_clock(extremes.lowest_at),
+            highest_at: state.by_its_clock(extremes.highest_at),
+            ..*extremes
+        }
     }
 }

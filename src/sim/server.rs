@@ -12,7 +12,7 @@ mod cutter;
 mod tally;
 mod words;
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -121,7 +121,6 @@ struct Request {
 pub struct Server<O> {
     outside: O,
     line: Faulty<SimulatedLine>,
-    units: BTreeSet<u8>,
     service: Service,
     clock: Arc<dyn Clock>,
     cutters: BTreeMap<ClientId, Cutter>,
@@ -140,7 +139,6 @@ pub struct Server<O> {
 impl<O: Outside> Server<O> {
     /// Serves the clients outside with these meters.
     pub fn new(outside: O, meters: Vec<Meter>, service: Service, clock: Arc<dyn Clock>) -> Self {
-        let units = meters.iter().map(|meter| meter.unit().get()).collect();
         let line = SimulatedLine::with_meters(meters, Arc::clone(&clock))
             .with_answer_time(service.answer_time);
         // A request has ended when its last byte is heard.
@@ -150,7 +148,6 @@ impl<O: Outside> Server<O> {
         Self {
             outside,
             line,
-            units,
             service,
             clock,
             cutters: BTreeMap::new(),
@@ -245,7 +242,7 @@ impl<O: Outside> Server<O> {
             }
             Cut::Request { transaction, frame } => {
                 let unit = frame.first().copied().unwrap_or_default();
-                if unit != 0 && !self.units.contains(&unit) {
+                if unit != 0 && !self.line.behind().has_unit(unit) {
                     info!("heard a request to unit {unit}, which is not here");
                     self.tally.foreign();
                 } else if self.waiting.len() < MOST_WAITING {

@@ -40,7 +40,7 @@ impl Reading<'_> {
         match point {
             "energy_active_import_total" => Some(self.energy().total.active()),
             "energy_reactive_import_total" => Some(self.energy().total.reactive()),
-            "rs485_address" => Some(self.meter.unit.get().into()),
+            "rs485_address" => Some(self.meter.unit.into()),
             _ => super::fixed(&FIXED, point),
         }
     }

@@ -3,7 +3,8 @@
 use super::{Reading, TENTH, THOUSANDTH, energy, inputs};
 use crate::sim::history::Metered;
 use crate::sim::load::Installation;
-use crate::sim::model::Content;
+use crate::sim::model::{Content, Destiny};
+use crate::sim::wave::Moment;
 use crate::sim::words::{rounded, text};
 
 /// A large house on 230/400 V that draws 5 to 39 A.
@@ -61,7 +62,7 @@ impl Reading<'_> {
         }
         self.counted(point)
             .or_else(|| self.demanded(point))
-            .or_else(|| inputs::get(point, self.moment))
+            .or_else(|| self.input(point))
             .or_else(|| self.setup(point))
             .map(Content::Number)
     }
@@ -87,14 +88,23 @@ impl Reading<'_> {
             | "energy_active_export_total"
             | "energy_reactive_export_total" => 0,
             "current_tariff" => i128::from(energy::is_night(self.moment)),
-            // Hundredths of an hour.
-            "hour_counter" => i128::from(self.moment.since_2020() / 36),
+            "hour_counter" => hours(self.moment) - self.meter.resets.hours,
             _ => return None,
         })
     }
 
+    /// What belongs to an input, of which the counters may have been set to zero.
+    fn input(&self, point: &str) -> Option<i128> {
+        let raw = inputs::get(point, self.moment)?;
+        Some(raw - self.meter.resets.counter(point))
+    }
+
     fn demanded(&self, point: &str) -> Option<i128> {
-        let highest = |metered| self.meter.load.history().of_demand(metered).highest;
+        let highest = |metered| {
+            self.meter
+                .resets
+                .highest(&self.meter.load, metered, self.now)
+        };
         let current = || {
             let phases = [Metered::CurrentA, Metered::CurrentB, Metered::CurrentC];
             phases.map(highest).into_iter().fold(0.0, f64::max)
@@ -113,9 +123,27 @@ impl Reading<'_> {
 
     fn setup(&self, point: &str) -> Option<i128> {
         match point {
-            "rs485_address" => Some(self.meter.unit.get().into()),
+            "rs485_address" => Some(self.meter.unit.into()),
             "secondary_address" => Some((self.meter.serial_number % 100_000_000).into()),
             _ => super::fixed(&FIXED, point),
         }
+    }
+}
+
+/// Hundredths of an hour since 2020.
+pub(super) fn hours(moment: Moment) -> i128 {
+    i128::from(moment.since_2020() / 36)
+}
+
+/// What becomes of a setting. For these the EM24 puts a value of its own in place of one that is out
+/// of range (page 10 to 12); of the others the pages that could be had say nothing.
+pub(super) fn destiny(point: &str) -> Destiny {
+    match point {
+        "password" => Destiny::Else(0),
+        // Page 1 is number 0.
+        _ if point.starts_with("selector_page_") => Destiny::Else(0),
+        _ if point.starts_with("digital_input_") && point.ends_with("_type") => Destiny::Else(0),
+        _ if point.ends_with("_prescaler") => Destiny::Else(1),
+        _ => Destiny::Setting,
     }
 }

@@ -22,7 +22,7 @@ const NIGHT_BEGINS: u32 = 22;
 const NIGHT_ENDS: u32 = 6;
 
 /// Tenths of a kilowatt hour of each phase, and of a kilovar hour of all three.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Steps([i128; 4]);
 
 impl Steps {
@@ -59,7 +59,7 @@ impl Steps {
 }
 
 /// All counters at one instant.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Energy {
     /// Since 2020.
     pub(super) total: Steps,
@@ -106,6 +106,15 @@ impl Energy {
             total: this_week.plus(weeks, week),
             partial: this_week.plus(partial_weeks, week),
             night: by_night(moment.second, this_week).plus(weeks, by_night(PERIOD_SECONDS, week)),
+        }
+    }
+
+    /// What has been added since it was `earlier`.
+    pub(super) fn since(&self, earlier: &Self) -> Self {
+        Self {
+            total: self.total.plus(-1, earlier.total),
+            partial: self.partial.plus(-1, earlier.partial),
+            night: self.night.plus(-1, earlier.night),
         }
     }
 

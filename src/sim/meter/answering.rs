@@ -6,7 +6,7 @@ use super::Kind;
 use super::fixed::Fixed;
 use crate::codec::{
     AddressError, DecodeError, ExceptionCode, FunctionCode, ReadValues, RegisterRange, Request,
-    Response, Write,
+    Response, Write, WrittenRange,
 };
 
 /// Why there is no normal response.
@@ -18,11 +18,12 @@ pub(super) enum Refusal {
 }
 
 impl Kind {
+    /// Does what a request asks for, and says what comes of it.
     pub(super) fn obey(
-        &self,
+        &mut self,
         function: FunctionCode,
         data_unit: &[u8],
-        fixed: &Fixed,
+        fixed: &mut Fixed,
         now: Timestamp,
     ) -> Result<Response, Refusal> {
         // Functions 20 and 21, which a real PM290 has, are in no profile.
@@ -46,8 +47,10 @@ impl Kind {
             }),
             Request::ReadExceptionStatus => Ok(Response::ExceptionStatus(self.model.status(now))),
             Request::ReturnQueryData(word) => Ok(Response::QueryData(word)),
-            // Nothing here can be written yet.
-            Request::Write(_) => Err(ExceptionCode::ILLEGAL_DATA_ADDRESS.into()),
+            Request::Write(write) => {
+                self.write(&write, fixed, now)?;
+                Ok(done(&write)?)
+            }
         }
     }
 
@@ -63,6 +66,25 @@ impl Kind {
             Request::Write(_) | Request::ReadExceptionStatus => true,
         }
     }
+}
+
+/// The response to a write that was carried out: for a single register the request again, also
+/// where the meter stored another value, since all manuals call it an echo.
+fn done(write: &Write) -> Result<Response, DecodeError> {
+    Ok(match write {
+        Write::Coil { address, on } => Response::Coil {
+            address: *address,
+            on: *on,
+        },
+        Write::Register { address, value } => Response::Register {
+            address: *address,
+            value: *value,
+        },
+        Write::Registers(block) => {
+            let range = WrittenRange::new(block.start().get(), block.count())?;
+            Response::RegistersWritten(range)
+        }
+    })
 }
 
 /// The registers a request touches.

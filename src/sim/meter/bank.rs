@@ -69,7 +69,7 @@ impl Kind {
         self.model.areas().iter().any(within)
     }
 
-    fn is_in_one_table(&self, range: RegisterRange) -> bool {
+    pub(super) fn is_in_one_table(&self, range: RegisterRange) -> bool {
         let table = |address: u32| {
             let size = self.profile.limits.table_registers?;
             // The loader takes no table of 0 registers.

@@ -1,4 +1,4 @@
-//! Registers that hold what was given, whatever the load does.
+//! Registers that hold what was given or written, whatever the load does.
 
 use std::collections::BTreeMap;
 
@@ -30,6 +30,29 @@ impl Fixed {
         registers.resize(usize::from(point.range.count()), 0);
         self.lay(point.range.start().get(), &mut registers);
         registers
+    }
+
+    /// Holds a word in a register from now on.
+    pub(super) fn hold(&mut self, address: u16, word: u16) {
+        self.words.insert(address, word);
+    }
+
+    /// Leaves the point of a register to the model again.
+    pub(super) fn let_go(&mut self, point: &Point, address: u16) {
+        self.points.remove(&point.name);
+        self.words.remove(&address);
+    }
+
+    /// Leaves all that can be written to the model again.
+    pub(super) fn lose_settings(&mut self, points: &[Point]) {
+        let writable = || points.iter().filter(|point| point.access.writable());
+        for point in writable() {
+            self.points.remove(&point.name);
+        }
+        self.words.retain(|address, _| {
+            let range = RegisterRange::new(*address, 1);
+            range.is_ok_and(|range| !writable().any(|point| point.range.overlaps(range)))
+        });
     }
 
     /// Puts single registers into those from `first`.

@@ -36,6 +36,13 @@ pub enum Wiring {
 }
 
 impl Wiring {
+    const ALL: [Self; 4] = [
+        Self::ThreeWireDirect,
+        Self::FourWireLineToNeutral,
+        Self::ThreeWireOpenDelta,
+        Self::FourWireLineToLine,
+    ];
+
     /// Whether the voltages are those to neutral.
     pub(super) const fn is_to_neutral(self) -> bool {
         matches!(self, Self::FourWireLineToNeutral)
@@ -47,10 +54,29 @@ impl Wiring {
     }
 }
 
+/// The points that scales follow from.
+pub(super) const IS_SCALED_BY: [&str; 3] =
+    ["wiring_configuration", "pt_ratio", "ct_primary_current"];
+
 /// What stands for "suppressed" and "not assigned".
 const NONE: i128 = 65535;
 
 impl Setup {
+    /// Sets up what a point of this name holds: the same load is measured on other scales from then
+    /// on, as with the transformers and the wires that were set up, and what lies above the new full
+    /// scale shows as the highest number.
+    pub(super) fn tell(&mut self, point: &str, value: u16) {
+        match point {
+            "wiring_configuration" => {
+                let wiring = Wiring::ALL.get(usize::from(value));
+                self.wiring = wiring.copied().unwrap_or(self.wiring);
+            }
+            "pt_ratio" => self.pt_ratio = value,
+            "ct_primary_current" => self.ct_primary = value,
+            _ => {}
+        }
+    }
+
     /// The register of a point that is set up or tells the state of the meter.
     pub(super) fn get(self, point: &str) -> Option<i128> {
         Some(match point {

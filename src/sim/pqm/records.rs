@@ -1,9 +1,10 @@
 //! What is counted and kept: pulses, the data logs and the event record. Everything starts at the
-//! beginning of 2020.
+//! beginning of 2020, or when it was cleared.
 
 use jiff::Timestamp;
 
 use super::DAY;
+use super::state::{Cleared, State};
 use super::words::{date_of, time_of};
 use crate::sim::model::Content;
 use crate::sim::wave::{Moment, PERIOD_SECONDS};
@@ -34,30 +35,39 @@ pub(super) fn event() -> Timestamp {
 }
 
 /// What the point of this name holds.
-pub(super) fn content(point: &str, moment: Moment) -> Option<Content> {
-    let since_2020 =
-        i128::from(moment.week) * i128::from(PERIOD_SECONDS) + i128::from(moment.second);
-    let seconds = since_2020.max(0);
+pub(super) fn content(point: &str, moment: Moment, state: &State) -> Option<Content> {
+    let seconds = since_2020(moment);
     let start = Moment::in_first_week(0);
-    let [first, second] = PULSES.map(|every| seconds / every);
+    let pulses = state.cleared(Cleared::Pulses);
+    let before = pulses.map_or(0, |cleared| since_2020(Moment::of(cleared)));
+    let [first, second] = PULSES.map(|every| seconds / every - before / every);
+    let cleared = |what| {
+        state
+            .cleared(what)
+            .map_or(start, |at| state.by_its_clock(at))
+    };
+    let has_event = state.cleared(Cleared::Events).is_none();
     Some(match point {
-        "pulse_count_cleared_time"
-        | "event_cleared_time"
-        | "log1_start_time"
-        | "log2_start_time" => time_of(start),
-        "pulse_count_cleared_date"
-        | "event_cleared_date"
-        | "log1_start_date"
-        | "log2_start_date" => date_of(start),
+        "pulse_count_cleared_time" => time_of(cleared(Cleared::Pulses)),
+        "pulse_count_cleared_date" => date_of(cleared(Cleared::Pulses)),
+        "event_cleared_time" => time_of(cleared(Cleared::Events)),
+        "event_cleared_date" => date_of(cleared(Cleared::Events)),
+        "log1_start_time" | "log2_start_time" => time_of(start),
+        "log1_start_date" | "log2_start_date" => date_of(start),
         _ => Content::Number(match point {
             "pulse_input_1" => first,
             "pulse_input_2" => second,
             "pulse_input_total" => first + second,
-            "event_count" => 1,
+            "event_count" => i128::from(has_event),
             "pulse_input_3" | "pulse_input_4" | "event_trace_cause" | "event_internal_fault" => 0,
             _ => return log(point, seconds).map(Content::Number),
         }),
     })
+}
+
+fn since_2020(moment: Moment) -> i128 {
+    let seconds = i128::from(moment.week) * i128::from(PERIOD_SECONDS) + i128::from(moment.second);
+    seconds.max(0)
 }
 
 /// The data logs: 1 runs and circulates, 2 has never run.

@@ -3,7 +3,7 @@
 use std::f64::consts::SQRT_2;
 
 use super::table::Statistic;
-use crate::sim::history::extremes;
+use crate::sim::history::Extremes;
 use crate::sim::model::Content;
 use crate::sim::wave::{Random, Wave};
 use crate::sim::words::rounded;
@@ -48,10 +48,16 @@ impl Signals {
         }
     }
 
-    /// What the point of this name holds this many seconds into the week.
-    pub(super) fn content(&self, point: &str, second: f64) -> Option<Content> {
+    /// What the point of this name holds this many seconds into the week, with the extremes of a
+    /// distortion as far back as they go.
+    pub(super) fn content(
+        &self,
+        point: &str,
+        second: f64,
+        extremes: impl Fn(&Wave) -> Extremes,
+    ) -> Option<Content> {
         if let Some(name) = point.strip_prefix("thd_") {
-            return self.distortion(name, second);
+            return self.distortion(name, second, extremes);
         }
         let value = match point {
             "analog_input" => self.analog_input.at(second),
@@ -71,7 +77,12 @@ impl Signals {
         Some(Content::Number(rounded(value)))
     }
 
-    fn distortion(&self, name: &str, second: f64) -> Option<Content> {
+    fn distortion(
+        &self,
+        name: &str,
+        second: f64,
+        extremes: impl Fn(&Wave) -> Extremes,
+    ) -> Option<Content> {
         let mean = |waves: &[Wave]| {
             let sum: f64 = waves.iter().map(|wave| wave.at(second)).sum();
             sum / 3.0

@@ -15,12 +15,9 @@ pub(super) fn content(point: &str) -> Option<Content> {
     raw.map(|raw| Content::Number(i128::from(raw)))
 }
 
-const WORDS: [(&str, u16); 11] = [
+const WORDS: [(&str, u16); 8] = [
     // A and B are closed; C and D are pulse inputs, open between two pulses.
     ("switch_inputs", 0x0300),
-    ("led_status", 0),
-    ("led_attribute", 0),
-    ("output_relays", 0),
     // Data log 1 is running.
     ("general_status", 0x0008),
     ("encrypted_passcode", 0x1B9D),

@@ -81,6 +81,11 @@ impl<T: Transport> Faulty<T> {
         self
     }
 
+    /// What it wraps.
+    pub const fn behind(&self) -> &T {
+        &self.inner
+    }
+
     /// What has happened so far.
     pub fn counts(&self) -> FaultCounts {
         self.tally.counts()
