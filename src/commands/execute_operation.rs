@@ -149,7 +149,7 @@ impl Task<'_> {
         let deed = Deed {
             place: &place,
             name: &operation.name,
-            what: &operation.name,
+            what: &format!("{}:", operation.name),
             done: "done",
             find_out: None,
         };

@@ -290,7 +290,7 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
-        CommandError::Function { code: 8, .. } => {
+        CommandError::Function { code: 7 | 8, .. } => {
             "without --meter it is sent all the same, and the meter may refuse it"
         }
         CommandError::Function { .. } => {
