@@ -5,6 +5,7 @@
 //! ```text
 //! main → commands → cli        what can be typed
 //!                 → output     readings, and what a meter is, to table, CSV, JSON
+//!                 → writing    points written, once, and what became of it
 //!                 → readings   a read plan carried out: a value or a fault for each point
 //!                 → sim        a simulated meter and its line
 //!                 → client     one request and its one answer; what is believed
@@ -38,3 +39,4 @@ pub mod readings;
 pub mod sim;
 pub mod transport;
 pub mod words;
+pub mod writing;

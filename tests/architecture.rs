@@ -12,14 +12,18 @@ use std::path::{Path, PathBuf};
 use support::paths::{modules, paths};
 
 /// What each module, and each file directly in `src/`, may import from besides itself.
-const LAYERS: [(&str, &[&str]); 13] = [
+const LAYERS: [(&str, &[&str]); 14] = [
     ("codec", &[]),
     ("transport", &["codec"]),
     ("profile", &["codec", "transport"]),
     ("client", &["codec", "transport", "words"]),
     ("sim", &["codec", "transport", "profile", "words"]),
     ("readings", &["codec", "client", "profile", "words"]),
-    ("output", &["codec", "profile", "readings", "words"]),
+    ("writing", &["client", "codec", "profile", "readings"]),
+    (
+        "output",
+        &["codec", "profile", "readings", "words", "writing"],
+    ),
     ("cli", &[]),
     (
         "commands",
@@ -33,6 +37,7 @@ const LAYERS: [(&str, &[&str]); 13] = [
             "sim",
             "transport",
             "words",
+            "writing",
         ],
     ),
     ("words.rs", &[]),
@@ -85,6 +90,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
         &[
             "profile/advice/",
             "profile/format.rs",
+            "profile/format/",
             "profile/load.rs",
             "profile/load/",
         ],

@@ -24,7 +24,7 @@ fn unit_0_cannot_be_read() {
         .code(2)
         .stderr(
             "error: unit 0 is the broadcast address, which no meter answers\n\
-             hint: a read needs one meter: --unit 1 to 247\n",
+             hint: meters are 1 to 247; `meterpoll broadcast` writes to all of them at once\n",
         )
         .run();
 }
@@ -118,7 +118,8 @@ fn a_profile_that_does_not_parse_is_named_with_line_and_key() {
         .stderr(format!(
             "error: {path}:7: a.adress: unknown key, expected \
              name, address, repeat, type, order, scale, span, unit, about, access, range, labels, \
-             no_value, only_with, alone, function, verified, page\n"
+             no_value, only_with, alone, function, hazard, momentary, step, allowed, also, \
+             write_function, broadcast, writable_with, shown_by, verified, page\n"
         ))
         .run();
 }

@@ -118,7 +118,7 @@ fn what_cannot_be_tested_is_refused_before_sending() {
         (
             "-a 0".to_owned(),
             "error: unit 0 is the broadcast address, which no meter answers\n\
-             hint: a read needs one meter: --unit 1 to 247\n",
+             hint: meters are 1 to 247; `meterpoll broadcast` writes to all of them at once\n",
         ),
         (
             "-a 17 --retries 1".to_owned(),

@@ -12,7 +12,8 @@ use meterpoll::client::{Failure, Patience};
 use meterpoll::codec::rtu::{decode_request, encode_request};
 use meterpoll::codec::{ExceptionCode, Reply, Request, Response, rtu};
 use meterpoll::profile::{LoopbackData, builtin, load};
-use meterpoll::readings::loopback::{LineEcho, Noticed, Tally, Try, attempt, echo};
+use meterpoll::readings::echo;
+use meterpoll::readings::loopback::{LineEcho, Noticed, Tally, Try, attempt};
 use meterpoll::transport::LineSettings;
 use support::script::{Bench, Chunk, reply, unit};
 

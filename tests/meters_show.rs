@@ -280,7 +280,7 @@ fn what_a_meter_sends_back_is_shown_where_it_is_not_everything() {
         let output = Program::new(&format!("meters show {arguments}")).output();
         String::from_utf8(output.stdout).expect("text")
     };
-    assert!(shown("pqm").contains("\nloop-back   sends back 0000 alone\n"));
+    assert!(shown("pqm").contains("\nloop-back    sends back 0000 alone\n"));
     assert!(!shown("em24").contains("loop-back"));
     assert!(shown("pqm -f json").contains("\"loopback_data\":\"zero\""));
     assert!(shown("em24 -f json").contains("\"loopback_data\":\"any\""));

@@ -184,7 +184,30 @@ fn a_name_that_no_meter_has_finds_nothing() {
 
 #[test]
 fn what_the_build_packed_is_what_the_file_says() {
-    assert_eq!(load("pqm.toml", PQM_TOML).as_ref(), Ok(&pqm()));
+    for meter in builtin::all() {
+        let file = format!("{}.toml", meter.name);
+        assert_eq!(load(&file, meter.text).as_ref(), Ok(&meter.profile()));
+    }
+}
+
+#[test]
+fn the_labels_of_an_operation_s_data_survive_the_packing() {
+    let pqm = pqm();
+    let data = |name: &str| {
+        pqm.operation(name)
+            .expect("it is there")
+            .data()
+            .expect("data")
+    };
+    assert_eq!(data("simulate_key").label(97), Some("value down"));
+    assert_eq!(
+        data("simulate_key").label_table.as_deref(),
+        Some("simulated_keys")
+    );
+    match &data("test_relays_and_leds").labels {
+        Labels::Bits(names) => assert_eq!(names[&0x0800], "aux 3 LED"),
+        other => panic!("{other:?}"),
+    }
 }
 
 #[test]

@@ -35,7 +35,9 @@ fn refused(text: &str, message: &str) {
 }
 
 const POINT_KEYS: &str = "name, address, repeat, type, order, scale, span, unit, about, access, range, \
-                          labels, no_value, only_with, alone, function, verified, page";
+                          labels, no_value, only_with, alone, function, hazard, momentary, moves, step, \
+                          allowed, also, write_function, broadcast, writable_with, shown_by, \
+                          verified, page";
 
 #[test]
 fn a_small_profile_loads() {
@@ -49,11 +51,12 @@ fn an_unknown_key_is_named_with_the_keys_that_are_known() {
     refused(
         &with("colour = \"red\""),
         "m.toml:4: colour: unknown key, expected name, title, manual, line, limits, \
-         identification, labels, factors, groups, points, identities",
+         identification, labels, factors, groups, points, identities, operations, \
+         command_registers, clock, status_bits, distinct",
     );
     let limits = "unknown key, expected highest_unit, functions, interchangeable_reads, \
-                  broadcast_functions, loopback_data, read_registers, write_registers, read_holes, \
-                  table_registers, typical_answer, longest_answer, pause";
+                  broadcast_functions, broadcast, loopback_data, read_registers, write_registers, \
+                  read_holes, table_registers, typical_answer, longest_answer, pause";
     refused(
         &with("[limits]\nread_register = 9"),
         &format!("m.toml:5: limits.read_register: {limits}"),

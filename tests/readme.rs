@@ -151,6 +151,8 @@ fn with_the_profile(name: &str) -> PathBuf {
 
 /// The source that describes the keys of a profile.
 const FORMAT: &str = include_str!("../src/profile/format.rs");
+/// Tables of its own beside it.
+const OPERATIONS: &str = include_str!("../src/profile/format/operations.rs");
 
 /// The profile in its documentation.
 fn documented() -> String {
@@ -167,7 +169,7 @@ fn documented() -> String {
 fn the_profile_that_shows_every_key_loads() {
     let profile = meterpoll::profile::load::load("format.rs", &documented());
     let profile = profile.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(profile.points.len(), 14);
+    assert_eq!(profile.points.len(), 24);
 }
 
 #[test]
@@ -190,8 +192,11 @@ fn every_key_of_a_profile_is_shown() {
 
 /// The keys of a profile.
 fn keys() -> Vec<&'static str> {
-    let fields = FORMAT.lines().filter_map(|line| {
-        let field = line.trim_start().strip_prefix("pub(super) ")?;
+    let fields = FORMAT.lines().chain(OPERATIONS.lines()).filter_map(|line| {
+        let line = line.trim_start();
+        let field = line
+            .strip_prefix("pub(super) ")
+            .or_else(|| line.strip_prefix("pub(in crate::profile) "))?;
         field.split_once(':').map(|(name, _)| name)
     });
     // `type` is a word of the language.

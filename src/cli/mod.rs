@@ -2,6 +2,16 @@
 //! completions, man pages and tests can build it alone. Everybody else calls [`parse`] and reads
 //! [`Arguments`].
 
+#[allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "its doc comments are help texts, where [default: ...] is no link"
+)]
+mod broadcast;
+#[allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "its doc comments are help texts, where [default: ...] is no link"
+)]
+mod execute_operation;
 mod line;
 #[allow(
     rustdoc::broken_intra_doc_links,
@@ -14,6 +24,7 @@ mod meters;
     reason = "its doc comments are help texts, where [default: ...] is no link"
 )]
 mod read_registers;
+mod read_status;
 #[allow(
     rustdoc::broken_intra_doc_links,
     rustdoc::invalid_html_tags,
@@ -22,19 +33,28 @@ mod read_registers;
 mod simulate;
 mod usage;
 mod values;
+#[allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "its doc comments are help texts, where [default: ...] is no link"
+)]
+mod write_setpoint;
 
 use clap::{ArgAction, Args, Parser, Subcommand};
 use clap_complete::Shell;
 
+pub use broadcast::BroadcastWrite;
+pub use execute_operation::{ExecuteOperation, OperationFunctionChoice};
 pub use line::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
 pub use loopback::{Loopback, LoopbackFormat};
 pub use meters::{
     CheckMeters, ExportMeter, Meters, MetersCommand, ShowFormat, ShowMeter, VerifyMeter,
 };
 pub use read_registers::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
+pub use read_status::{ReadStatus, StatusFormat};
 pub use simulate::Simulate;
 pub use usage::{Usage, completion_script, parse};
 pub use values::{MeterUnits, Units};
+pub use write_setpoint::{Care, WriteFunctionChoice, WriteSetpoint};
 
 /// What the program ends with, code by code.
 pub const EXIT_CODES: [(u8, &str); 11] = [
@@ -50,7 +70,10 @@ pub const EXIT_CODES: [(u8, &str); 11] = [
     (3, "port: not there, busy, not permitted, lost"),
     (4, "no valid answer: silence, damaged or mismatched frames"),
     (5, "the meter refused"),
-    (6, "outcome of a write unknown"),
+    (
+        6,
+        "outcome of a write unknown, or the meter holds another value than was written",
+    ),
     (7, "output could not be written"),
     (129, "stopped by SIGHUP, after the row in hand was finished"),
     (130, "stopped by SIGINT, after the row in hand was finished"),
@@ -103,6 +126,23 @@ pub struct Verbosity {
 pub enum Command {
     /// Read points of a meter by name, or raw registers by address
     ReadRegisters(Box<ReadRegisters>),
+    /// Write points of a meter by name, or raw registers by address, and read them back
+    ///
+    /// What will be written is shown first, with what the meter holds now. Each request is sent once:
+    /// when its answer is lost it may have been carried out or not, which ends with 6 and is never
+    /// tried again behind your back. Only a meter that says that it is busy is asked again.
+    WriteSetpoint(Box<WriteSetpoint>),
+    /// Write to every meter on the line at once, without an answer
+    ///
+    /// What is sent is reported as sent: nobody answers a broadcast. --verify-units reads meters
+    /// afterwards. A broadcast is never repeated by itself.
+    Broadcast(Box<BroadcastWrite>),
+    /// Have a meter do something: reset, clear energy, set its clock
+    ///
+    /// It is sent once, as write-setpoint does it. --list shows what a meter can do.
+    ExecuteOperation(Box<ExecuteOperation>),
+    /// Read the eight status bits of a meter, by name (function 07)
+    ReadStatus(Box<ReadStatus>),
     /// Send words to a unit and compare what comes back: is the line good?
     ///
     /// Function 08, sub-function 0 (Return Query Data), as ping does it elsewhere: a line a try, then

@@ -18,6 +18,10 @@ use crate::transport::line::Quiet;
 /// that holds bytes back.
 const GAP: Duration = Duration::from_millis(100);
 
+/// How long an answer is still waited for once the program is to stop: longer than any of the four
+/// meters usually takes.
+const LAST_WAIT: Duration = Duration::from_millis(500);
+
 /// Unrecognised bytes are kept up to this many, the longest frame behind a longest frame of noise;
 /// older ones are let go, so that endless noise costs no memory.
 const MOST_RECEIVED: usize = 512;
@@ -82,16 +86,28 @@ impl Client {
     /// Sends a request once, after the silence and `pause`, and waits for its answer. The answer is
     /// still owed when this returns: whether it pays is the caller's to say.
     pub(super) fn attempt(&mut self, asked: &Asked, pause: Duration) -> Result<Answer, Failure> {
-        let result = self.try_once(asked, pause);
-        let counters = self.ledger.of(asked.unit);
-        match &result {
-            Ok(_) => counters.answers += 1,
-            Err(failure) => counters.fail(failure),
-        }
+        let silent = self.wait_for_silence(asked, pause);
+        let result = silent.and_then(|()| self.exchange(asked));
+        self.count(asked.unit, result.as_ref().err());
         result
     }
 
-    fn try_once(&mut self, asked: &Asked, pause: Duration) -> Result<Answer, Failure> {
+    /// Counts an attempt that has ended like this.
+    pub(super) fn count(&mut self, unit: Unit, failure: Option<&Failure>) {
+        let counters = self.ledger.of(unit);
+        match failure {
+            None => counters.answers += 1,
+            Some(failure) => counters.fail(failure),
+        }
+    }
+
+    /// Waits until the line is silent for as long as a request needs it to be, and for `pause`; when
+    /// this fails, nothing has been sent.
+    pub(super) fn wait_for_silence(
+        &mut self,
+        asked: &Asked,
+        pause: Duration,
+    ) -> Result<(), Failure> {
         let pause = if self.sent { pause } else { Duration::ZERO };
         match self.line.wait_quiet(pause, asked.patience.timeout)? {
             Quiet::Never { discarded } => return Err(Failure::NeverQuiet { discarded }),
@@ -101,6 +117,12 @@ impl Client {
                 info!("{discarded} stray bytes thrown away");
             }
         }
+        Ok(())
+    }
+
+    /// Sends a request on a silent line and waits for its answer. When this fails, the request may
+    /// have been heard all the same.
+    pub(super) fn exchange(&mut self, asked: &Asked) -> Result<Answer, Failure> {
         let sent = self.line.send(asked.frame.as_bytes())?;
         self.sent = true;
         self.ledger.of(asked.unit).requests += 1;
@@ -162,12 +184,17 @@ impl Client {
         let begin_by = sent + asked.patience.timeout;
         let end_by = begin_by + self.transfer_time(&asked.request) + ADAPTER_LATENCY;
         let mut deadline = begin_by;
+        let mut stop_by = None;
         loop {
+            if self.is_stopping() {
+                stop_by.get_or_insert(self.line.now() + LAST_WAIT);
+            }
+            deadline = stop_by.map_or(deadline, |stop_by| deadline.min(stop_by));
             let left = deadline.saturating_sub(self.line.now());
             // At the deadline one last look: a process that was held up has bytes waiting.
             let came = self
                 .line
-                .receive_into(&mut heard.received, left)
+                .receive_into(&mut heard.received, self.piece_of(left))
                 .map_err(End::Lost)?;
             if came == 0 && left.is_zero() {
                 return Err(End::TimeIsUp);

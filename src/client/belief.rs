@@ -11,8 +11,9 @@ use crate::codec::{Reply, Request, Response, Unit};
 /// receiver on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Echo {
-    /// An echo is recognised and dropped. Where the answer repeats the request (functions 05, 06,
-    /// 08), one copy is the answer until the line has been seen to echo.
+    /// An echo is recognised and dropped. Where the answer repeats the request, one copy is the
+    /// answer: of a loop-back (08) until the line has been seen to echo, of a write (05, 06) only
+    /// once it has been seen not to.
     #[default]
     Auto,
     /// The line echoes: the first copy of the request is never the answer.
@@ -86,10 +87,12 @@ impl<'a> Expectation<'a> {
         let (drop_echo, can_echo) = match echo {
             Echo::On => (true, true),
             Echo::Off => (false, false),
-            Echo::Auto => (
-                echoes == Some(true) || !is_mirrored(request),
-                echoes != Some(false),
-            ),
+            Echo::Auto => {
+                let can_echo = echoes != Some(false);
+                let is_write = matches!(request, Request::Write(_));
+                let must_drop = echoes == Some(true) || !is_mirrored(request);
+                (must_drop || is_write && can_echo, can_echo)
+            }
         };
         Self {
             unit,
@@ -310,7 +313,8 @@ pub fn answer_length(request: &Request) -> usize {
     }
 }
 
-/// Whether a response is what the request implies, field by field.
+/// Whether a response is what the request implies, field by field. The value that function 06
+/// answers is the one the meter has stored, which it may have put into its own limits.
 fn matches(request: &Request, response: &Response) -> bool {
     use crate::codec::Write;
     match (request, response) {
@@ -329,12 +333,11 @@ fn matches(request: &Request, response: &Response) -> bool {
             },
         ) => address == answered && on == state,
         (
-            Request::Write(Write::Register { address, value }),
+            Request::Write(Write::Register { address, .. }),
             Response::Register {
-                address: answered,
-                value: stored,
+                address: answered, ..
             },
-        ) => address == answered && value == stored,
+        ) => address == answered,
         (Request::Write(Write::Registers(block)), Response::RegistersWritten(range)) => {
             block.range() == *range
         }

@@ -9,6 +9,7 @@
 //! * `request` repeats the *same* request, so that a late answer to an earlier attempt is still a
 //!   right one, and decides how a late answer to anything else is told from the right one: what
 //!   each way costs and proves is written there.
+//! * [`write`](mod@write) sends a write, once, and tells what is known of it.
 //! * `debts` remembers the answers that may still come after failed attempts; they are waited for
 //!   before a *different* request goes out, and before the line is left. `recent` remembers those
 //!   that have come, which a repeater may send again.
@@ -29,9 +30,11 @@ mod recent;
 mod regain;
 mod request;
 mod transaction;
+pub mod write;
 
 pub use belief::Echo;
 pub use counters::Counters;
 pub use failure::Failure;
 pub use patience::{Patience, QueryData, Ways};
 pub use transaction::Client;
+pub use write::{Confirmation, Unwritten};

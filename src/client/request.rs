@@ -45,7 +45,7 @@ use super::transaction::Client;
 use crate::codec::{ExceptionCode, Reply, Request, Response, Unit};
 
 /// How long to wait before a unit that was busy is asked again, time after time.
-const BUSY_WAITS: [Duration; 3] = [
+pub(super) const BUSY_WAITS: [Duration; 3] = [
     Duration::from_millis(100),
     Duration::from_millis(200),
     Duration::from_millis(400),
@@ -246,7 +246,7 @@ impl Client {
         Ok(wanted.clone())
     }
 
-    fn is_doubtful(&self, asked: &Asked) -> bool {
+    pub(super) fn is_doubtful(&self, asked: &Asked) -> bool {
         self.debts.doubt(asked.unit, &asked.request, &asked.frame)
     }
 
@@ -255,7 +255,7 @@ impl Client {
     ///
     /// # Errors
     /// [`Failure`] of the loop-back, or [`Failure::Ambiguous`] where it has proved nothing.
-    fn make_sure(&mut self, wanted: &Asked) -> Result<(), Failure> {
+    pub(super) fn make_sure(&mut self, wanted: &Asked) -> Result<(), Failure> {
         if let Some(data) = wanted.patience.ways.loopback
             && self.knows_echo()
         {

@@ -1,5 +1,7 @@
 //! A client on a line: what it remembers, and how it waits for what may still come.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use jiff::Timestamp;
@@ -19,6 +21,9 @@ use crate::transport::Line;
 /// Allowance for adapters that hold bytes back: two of the 16 ms periods of a common USB chip.
 pub(super) const ADAPTER_LATENCY: Duration = Duration::from_millis(32);
 
+/// Waits are cut into pieces of this length where the program may be stopped meanwhile.
+const PIECE: Duration = Duration::from_millis(50);
+
 /// A Modbus client on one line.
 pub struct Client {
     pub(super) line: Line,
@@ -34,6 +39,8 @@ pub struct Client {
     pub(super) barriers: u16,
     pub(super) answer_times: AnswerTimes,
     pub(super) ledger: Ledger,
+    /// Raised when the program is to stop.
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl Client {
@@ -49,6 +56,27 @@ impl Client {
             barriers: 0,
             answer_times: AnswerTimes::default(),
             ledger: Ledger::default(),
+            stop: None,
+        }
+    }
+
+    /// From now on, once `stop` is raised, waits no longer than it must: half a second for the answer
+    /// to what it has sent, and for nothing else.
+    pub fn stop_when(&mut self, stop: Arc<AtomicBool>) {
+        self.stop = Some(stop);
+    }
+
+    /// Whether the program is to stop.
+    pub(super) fn is_stopping(&self) -> bool {
+        let stop = self.stop.as_ref();
+        stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
+    }
+
+    /// As much of a wait as may pass before somebody looks whether the program is to stop.
+    pub(super) fn piece_of(&self, wait: Duration) -> Duration {
+        match &self.stop {
+            Some(_) => wait.min(PIECE),
+            None => wait,
         }
     }
 
@@ -66,6 +94,11 @@ impl Client {
     /// Whether the line sends our own bytes back, as far as that has shown; `None` before.
     pub const fn echoes(&self) -> Option<bool> {
         self.echoes
+    }
+
+    /// Whether the port is lost, as far as that has been noticed.
+    pub const fn is_lost(&self) -> bool {
+        self.line.loss().is_some()
     }
 
     /// What has been counted of a unit so far.
@@ -137,10 +170,13 @@ impl Client {
                 self.take(late.unit, &late.frame, &late.reply);
             }
             forget_oldest(&mut received);
+            if self.is_stopping() {
+                break;
+            }
             let Some(until) = self.debts.wait_until(next, self.line.now()) else {
                 break;
             };
-            wait = until.saturating_sub(self.line.now());
+            wait = self.piece_of(until.saturating_sub(self.line.now()));
         }
         self.debts.expire(self.line.now());
         Ok(())
@@ -173,7 +209,7 @@ impl Client {
 
     /// Whether it is known if the own bytes come back, so that an answer that looks like the
     /// request can be told from its echo.
-    pub(super) fn knows_echo(&self) -> bool {
+    pub fn knows_echo(&self) -> bool {
         self.echo != Echo::Auto || self.echoes.is_some()
     }
 }

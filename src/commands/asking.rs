@@ -65,9 +65,9 @@ impl<'a> Asking<'a> {
         Plan::new(points, self.function, &self.rules, self.cost)
     }
 
-    /// Reads one unit and tells what went wrong.
-    pub(super) fn ask(&self, unit: Unit, client: &mut Client, report: &mut Report) -> Taken<'a> {
-        let inquiry = Inquiry {
+    /// What is asked of one unit.
+    pub(super) fn inquiry(&self, unit: Unit) -> Inquiry<'a, '_> {
+        Inquiry {
             unit,
             meter: self.meter,
             points: self.points,
@@ -75,17 +75,31 @@ impl<'a> Asking<'a> {
             function: self.function,
             cost: self.cost,
             patience: self.patience,
-        };
-        let taken = take(client, &inquiry, &mut Memory::new(self.rules.clone()));
-        let place = Place {
-            line: &self.line,
-            unit,
-            points: &taken.points,
-            attempts: self.patience.retries + 1,
-        };
+        }
+    }
+
+    /// A memory in which nothing has been learned of a unit yet.
+    pub(super) fn memory(&self) -> Memory {
+        Memory::new(self.rules.clone())
+    }
+
+    /// Reads one unit and tells what went wrong.
+    pub(super) fn ask(&self, unit: Unit, client: &mut Client, report: &mut Report) -> Taken<'a> {
+        let taken = take(client, &self.inquiry(unit), &mut self.memory());
+        let place = self.place(unit, &taken.points);
         for trouble in &taken.troubles {
             report.trouble(&place, trouble);
         }
         taken
+    }
+
+    /// Where, what and how often something was tried.
+    pub(super) fn place<'b>(&'b self, unit: Unit, points: &'b [Point]) -> Place<'b> {
+        Place {
+            line: &self.line,
+            unit,
+            points,
+            attempts: self.patience.retries + 1,
+        }
     }
 }

@@ -5,13 +5,16 @@ use std::io;
 use thiserror::Error;
 
 use crate::codec::{AddressError, Unit};
+use crate::profile::assignment::AssignError;
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
+use crate::profile::write_plan::WritePlanError;
 use crate::sim::values::ValuesError;
 use crate::transport::faulty::FaultScriptError;
 use crate::transport::listen::ListenError;
 use crate::transport::ports::ListError;
 use crate::transport::{OpenError, PtyError, TransportError};
+use crate::writing::before::NotNow;
 
 /// Why a command cannot do its work at all.
 #[derive(Debug, Error)]
@@ -27,6 +30,135 @@ pub enum CommandError {
     ColumnClash {
         /// The name.
         name: String,
+    },
+    /// What was typed is nothing that can be written.
+    #[error(transparent)]
+    Assign(#[from] AssignError),
+    /// The meter does not take it like that.
+    #[error(transparent)]
+    WritePlan(#[from] WritePlanError),
+    /// The meter does not take it as it is now.
+    #[error("{0}; nothing was sent")]
+    NotNow(#[from] NotNow),
+    /// What changes how the meter is reached, before something else that is written.
+    #[error("{name} changes how the meter is reached, and {after} is to be written after it")]
+    MovesFirst {
+        /// The point.
+        name: String,
+        /// What comes behind it.
+        after: String,
+    },
+    /// A request that follows from the setup of a meter.
+    #[error("{name} is scaled by what the meter is set up for, which nothing tells unread")]
+    NeedsMeter {
+        /// The point.
+        name: String,
+    },
+    /// Something hazardous, and nobody to ask.
+    #[error("{name} {hazard}, and there is no terminal to ask at; nothing was sent")]
+    NeedsYes {
+        /// The point or operation.
+        name: String,
+        /// What it does.
+        hazard: String,
+    },
+    /// Somebody was asked and did not say yes.
+    #[error("not confirmed; nothing was sent")]
+    Declined,
+    /// A meter of whose operations nothing is known.
+    #[error("the profile of {meter} has no operations")]
+    NoOperations {
+        /// The meter.
+        meter: String,
+    },
+    /// An operation that the meter does not have.
+    #[error("{meter} has no operation '{name}'{}", did_you_mean(.near))]
+    NoOperation {
+        /// The meter.
+        meter: String,
+        /// What was named.
+        name: String,
+        /// Names that look like it.
+        near: Vec<String>,
+    },
+    /// A value for an operation that takes none.
+    #[error("{name} takes no value")]
+    TakesNothing {
+        /// The operation.
+        name: String,
+    },
+    /// No value for an operation that takes one.
+    #[error("{name} takes a value, {what}: {form}")]
+    Lacks {
+        /// The operation.
+        name: String,
+        /// What the value is.
+        what: String,
+        /// What can be given.
+        form: String,
+    },
+    /// Function 05 carries a number and nothing with it.
+    #[error("{name} takes a value, and function 05 carries none")]
+    CarriesNothing {
+        /// The operation.
+        name: String,
+    },
+    /// The meter is not told in this way.
+    #[error("{meter} takes no operations with function {code:02}")]
+    Carrier {
+        /// The meter.
+        meter: String,
+        /// The function code.
+        code: u8,
+    },
+    /// A read that was to be broadcast.
+    #[error("'{name}' has no value, and a broadcast reads nothing: nobody answers it")]
+    BroadcastRead {
+        /// What was typed.
+        name: String,
+    },
+    /// A broadcast to meters of which nothing is known.
+    #[error("without a meter nothing tells what may be broadcast")]
+    BroadcastUnknown,
+    /// A meter that obeys no broadcast.
+    #[error("{meter} obeys no broadcast")]
+    NoBroadcast {
+        /// The meter.
+        meter: String,
+    },
+    /// A function that the meter does not obey on address 0.
+    #[error("{meter} does not obey function {code:02} in a broadcast")]
+    BroadcastFunction {
+        /// The meter.
+        meter: String,
+        /// The function code.
+        code: u8,
+    },
+    /// What the manual does not say can be broadcast.
+    #[error("the manual of {meter} does not say that {name} can be broadcast")]
+    NotBroadcast {
+        /// The meter.
+        meter: String,
+        /// The point or operation.
+        name: String,
+    },
+    /// A point for one unit that is written to all at once alone.
+    #[error("{name} is written to all meters at once, and to none by itself")]
+    BroadcastOnly {
+        /// The point.
+        name: String,
+    },
+    /// A meter without a clock that can be set.
+    #[error("{meter} has no clock that can be set by a broadcast")]
+    NoClock {
+        /// The meter.
+        meter: String,
+    },
+    /// Something that is no time.
+    #[error("'{found}' is no time to set a clock to")]
+    NoMoment {
+        /// What was given.
+        found: String,
     },
     /// An option that has no effect on what was asked for.
     #[error("{option} is for {what}")]
@@ -104,7 +236,7 @@ pub enum CommandError {
     Listen(#[from] ListenError),
     /// The values to be simulated are wrong.
     #[error(transparent)]
-    Values(#[from] ValuesError),
+    Values(Box<ValuesError>),
     /// A fault rule is none.
     #[error("{}{problem}", .file.as_ref().map(|file| format!("{file}: ")).unwrap_or_default())]
     Faults {
@@ -163,11 +295,24 @@ impl HiddenKinds {
     }
 }
 
+fn did_you_mean(near: &[String]) -> String {
+    match near {
+        [] => String::new(),
+        near => format!("; did you mean {}?", near.join(", ")),
+    }
+}
+
 /// `both pqm and em24`, `pqm twice`.
 fn twice(first: &str, second: &str) -> String {
     if first == second {
         format!("{first} twice")
     } else {
         format!("both {first} and {second}")
+    }
+}
+
+impl From<ValuesError> for CommandError {
+    fn from(error: ValuesError) -> Self {
+        Self::Values(Box::new(error))
     }
 }

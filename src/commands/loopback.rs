@@ -21,7 +21,8 @@ use crate::output::loopback::csv::Csv;
 use crate::output::loopback::json::{Json, Settings};
 use crate::output::loopback::table::Table;
 use crate::profile::{Limits, LoopbackData, Profile, find};
-use crate::readings::loopback::{echo, word};
+use crate::readings::echo;
+use crate::readings::loopback::word;
 
 /// Tests the line to every unit and tells what comes of it.
 pub(super) fn run(arguments: &Loopback, report: &mut Report) -> Result<ExitCode, CommandError> {

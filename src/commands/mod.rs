@@ -2,20 +2,28 @@
 //! line and the rest.
 
 mod asking;
+mod broadcast;
+mod careful;
 mod completions;
 mod error;
+mod execute_operation;
 mod exit_code;
+mod fates;
+mod local_time;
 mod logging;
 mod loopback;
 mod meters;
 mod open_line;
 mod ports;
 mod read_registers;
+mod read_status;
 mod report;
+mod setpoints;
 mod show_plan;
 mod signals;
 mod simulate;
 mod trouble;
+mod write_setpoint;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -38,6 +46,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let mut report = Report::new(arguments.verbosity.quiet);
     let result = match arguments.command {
         Command::ReadRegisters(arguments) => read_registers::run(&arguments, &mut report),
+        Command::WriteSetpoint(arguments) => write_setpoint::run(&arguments, &mut report),
+        Command::Broadcast(arguments) => broadcast::run(&arguments, &mut report),
+        Command::ExecuteOperation(arguments) => execute_operation::run(&arguments, &mut report),
+        Command::ReadStatus(arguments) => read_status::run(&arguments, &mut report),
         Command::Loopback(arguments) => loopback::run(&arguments, &mut report),
         Command::Meters(arguments) => meters::run(&arguments, &mut report),
         Command::Ports => ports::list(&report),

@@ -11,8 +11,10 @@ use crate::cli::Usage;
 use crate::client::Failure;
 use crate::codec::{AddressError, ExceptionCode};
 use crate::output::escape;
+use crate::profile::assignment::AssignError;
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
+use crate::profile::write_plan::WritePlanError;
 use crate::readings::Trouble;
 use crate::transport::holder::Holders;
 use crate::transport::listen::ListenError;
@@ -115,6 +117,20 @@ impl Report {
         self.hint(failure_hint(failure).map(str::to_owned));
     }
 
+    /// Prints what was done.
+    pub(super) fn success(&self, text: &str) {
+        if !self.quiet {
+            // As readings are: stdout is what was asked for.
+            let _ = writeln!(io::stdout(), "{}", escape(text));
+        }
+    }
+
+    /// Prints that a meter has refused to be written to.
+    pub(super) fn refused(&mut self, place: &str, code: ExceptionCode) {
+        say(format_args!("error: {place}: the meter refused: {code}"));
+        self.hint(write_hint(code).map(str::to_owned));
+    }
+
     /// Prints what to try.
     pub(super) fn advise(&mut self, hint: &str) {
         self.hint(Some(hint.to_owned()));
@@ -138,12 +154,31 @@ impl Report {
 
 /// Prints that units were not asked because the port is gone.
 pub(super) fn untried_units(count: usize) {
+    if count == 0 {
+        return;
+    }
     let (units, were) = if count == 1 {
         ("unit", "was")
     } else {
         ("units", "were")
     };
     say(format_args!("error: {count} more {units} {were} not tried"));
+}
+
+/// Prints something that is to be known before something is done.
+pub(super) fn warning(text: &str) {
+    say(format_args!("warning: {text}"));
+}
+
+/// Prints something that went wrong.
+pub(super) fn problem(place: &str, text: &str) {
+    say(format_args!("error: {place}: {text}"));
+}
+
+/// Prints that something was sent, and why nothing is known of it.
+pub(super) fn unknown(place: &str, failure: &Failure) {
+    say(format_args!("error: {place}: {failure}"));
+    causes(failure);
 }
 
 /// Writes a line to stderr, made safe for a terminal: it may quote a file or a meter. Where stderr
@@ -164,6 +199,27 @@ const fn exit_code(error: &CommandError) -> ExitCode {
     match error {
         CommandError::Unit(_)
         | CommandError::Select(_)
+        | CommandError::Assign(_)
+        | CommandError::WritePlan(_)
+        | CommandError::NotNow(_)
+        | CommandError::MovesFirst { .. }
+        | CommandError::NeedsMeter { .. }
+        | CommandError::NeedsYes { .. }
+        | CommandError::Declined
+        | CommandError::NoOperations { .. }
+        | CommandError::NoOperation { .. }
+        | CommandError::TakesNothing { .. }
+        | CommandError::Lacks { .. }
+        | CommandError::CarriesNothing { .. }
+        | CommandError::Carrier { .. }
+        | CommandError::BroadcastRead { .. }
+        | CommandError::BroadcastUnknown
+        | CommandError::NoBroadcast { .. }
+        | CommandError::BroadcastFunction { .. }
+        | CommandError::NotBroadcast { .. }
+        | CommandError::BroadcastOnly { .. }
+        | CommandError::NoClock { .. }
+        | CommandError::NoMoment { .. }
         | CommandError::ColumnClash { .. }
         | CommandError::Function { .. }
         | CommandError::NoEffect { .. }
@@ -192,15 +248,49 @@ const fn exit_code(error: &CommandError) -> ExitCode {
 
 fn hint(error: &CommandError) -> Option<String> {
     let text = match error {
-        CommandError::Unit(AddressError::UnitZero) => "a read needs one meter: --unit 1 to 247",
+        CommandError::Unit(AddressError::UnitZero) => {
+            "meters are 1 to 247; `meterpoll broadcast` writes to all of them at once"
+        }
         CommandError::Unit(_) => {
             "units go to 247; to 255 only for meters whose profile says so, such as --meter pqm"
         }
-        CommandError::Select(error) => return select_hint(error),
+        CommandError::Select(error) | CommandError::Assign(AssignError::Select(error)) => {
+            return select_hint(error);
+        }
+        CommandError::Assign(AssignError::NoValue { .. } | AssignError::Nothing) => {
+            "values are written ct_primary=200 or 0x1028=500"
+        }
+        CommandError::Assign(AssignError::Several { .. }) => {
+            "name each point with its value, such as tariff_1_cost=1 tariff_2_cost=1"
+        }
+        CommandError::Assign(AssignError::NotOne { .. }) => "name the points, each with its value",
+        CommandError::WritePlan(WritePlanError::Function { .. }) => {
+            "leave --function out: the meter's own is taken"
+        }
+        CommandError::WritePlan(WritePlanError::TooMany { .. }) => "write them in several calls",
+        CommandError::MovesFirst { .. } => "write what changes that last, or by itself",
+        CommandError::NeedsMeter { .. } => {
+            "give the register's own number, 0x and its digits, or leave --dry-run out"
+        }
+        CommandError::NeedsYes { .. } => "--yes says that it is meant",
+        CommandError::NoOperation { near, .. } if !near.is_empty() => return None,
+        CommandError::NoOperation { .. } => "`execute-operation --list` shows them",
+        CommandError::CarriesNothing { .. } => "leave --function out, or give 16",
+        CommandError::BroadcastRead { .. } => {
+            "give points and values, NAME=VALUE, or the name of one operation"
+        }
+        CommandError::BroadcastUnknown => "name the meter with --meter, or send it with --force",
+        CommandError::NotBroadcast { .. } => {
+            "--force sends it all the same; --verify-units shows which meters have taken it"
+        }
+        CommandError::BroadcastOnly { .. } => "`meterpoll broadcast` writes it",
+        CommandError::NoMoment { .. } => {
+            "give now, or a date and time such as 2026-11-22T13:27:10.015"
+        }
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
-        CommandError::Function { code: 8, .. } => {
+        CommandError::Function { code: 7 | 8, .. } => {
             "without --meter it is sent all the same, and the meter may refuse it"
         }
         CommandError::Function { .. } => {
@@ -302,6 +392,20 @@ fn open_hint(error: &OpenError) -> Option<String> {
         _ => return None,
     };
     Some(text.to_owned())
+}
+
+/// What to make of a meter that refuses to be written to.
+fn write_hint(code: ExceptionCode) -> Option<&'static str> {
+    Some(match code {
+        ExceptionCode::ILLEGAL_FUNCTION => {
+            "the meter may take the other function, --function 6 or 16"
+        }
+        ExceptionCode::ILLEGAL_DATA_ADDRESS => {
+            "the meter has no such registers, or none that can be written"
+        }
+        ExceptionCode::ILLEGAL_DATA_VALUE => "the meter does not take this value, or not now",
+        _ => return failure_hint(&Failure::Exception(code)),
+    })
 }
 
 pub(super) fn failure_hint(failure: &Failure) -> Option<&'static str> {

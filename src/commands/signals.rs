@@ -1,5 +1,6 @@
 //! SIGINT, SIGTERM and SIGHUP: the row in hand is finished first. After one of them, SIGINT or
-//! SIGTERM ends the program at once.
+//! SIGTERM ends the program at once, unless something is being written: then it is said first what
+//! became of that, which takes half a second at the most.
 //!
 //! A second SIGHUP does not: for a window that is closed one comes from the system and one from the
 //! shell, with no time between them.
@@ -18,11 +19,31 @@ use super::ExitCode;
 pub(super) struct Stop {
     /// The exit code of the signal that came last; 0 while none has come.
     code: Arc<AtomicUsize>,
+    /// Whether one has come.
+    raised: Arc<AtomicBool>,
+}
+
+/// What a second signal does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Second {
+    /// It ends the program.
+    Ends,
+    /// Nothing.
+    Waits,
 }
 
 impl Stop {
     /// Listens from now on. A signal that cannot be listened to ends the program as ever.
     pub(super) fn listen() -> Self {
+        Self::listening(Second::Ends)
+    }
+
+    /// The same for writes: no signal ends the program before it has said what became of them.
+    pub(super) fn listen_while_writing() -> Self {
+        Self::listening(Second::Waits)
+    }
+
+    fn listening(second: Second) -> Self {
         let code = Arc::default();
         let raised: Arc<AtomicBool> = Arc::default();
         let note = |signal, exit: ExitCode| {
@@ -34,7 +55,9 @@ impl Stop {
             (SIGTERM, ExitCode::Terminated),
         ] {
             // Before the others: the first signal finds the flag down.
-            if flag::register_conditional_default(signal, Arc::clone(&raised)).is_ok() {
+            if second == Second::Waits
+                || flag::register_conditional_default(signal, Arc::clone(&raised)).is_ok()
+            {
                 note(signal, exit);
             }
         }
@@ -42,7 +65,12 @@ impl Stop {
         if !ignores_hang_ups() {
             note(SIGHUP, ExitCode::HungUp);
         }
-        Self { code }
+        Self { code, raised }
+    }
+
+    /// A flag that is up once a signal has come.
+    pub(super) fn flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.raised)
     }
 
     /// What to end with, once a signal has come.

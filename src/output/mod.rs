@@ -3,11 +3,14 @@
 //! Every format of readings is a [`Sink`] that takes one [`Row`] after the other. A row goes out in
 //! one write. Loop-back tests have sinks of their own, see [`loopback`]. What a meter's profile says is a [`profile::Shown`].
 
+pub mod changes;
 pub mod columns;
 pub mod csv;
 pub mod json;
 pub mod loopback;
+pub mod operations;
 pub mod profile;
+pub mod status;
 pub mod table;
 pub mod verification;
 

@@ -6,6 +6,7 @@ mod head;
 mod json;
 mod legend;
 mod listing;
+mod operations;
 mod sheet;
 mod terms;
 
@@ -61,7 +62,17 @@ impl Shown<'_> {
         parts.extend(listing::scales(points));
         parts.extend(legend.text());
         if extent != Extent::Bare {
-            parts.extend(listing::footnote(points));
+            parts.extend(operations::hazards_of_points(points));
+        }
+        let operations = match extent {
+            Extent::Whole => profile.operations.as_slice(),
+            Extent::Points | Extent::Bare => &[],
+        };
+        parts.extend(operations::table(operations));
+        parts.extend(operations::hazards(operations));
+        if extent != Extent::Bare {
+            let is_marked = operations.iter().any(|operation| !operation.verified);
+            parts.extend(listing::footnote(points, is_marked));
         }
         parts.join("\n")
     }

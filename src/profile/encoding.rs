@@ -3,6 +3,10 @@
 //! A value is written as it is shown: a number in the point's unit, a label, names of bits, text, a
 //! date or a time. Codes, hex and bits can be given as numbers as well. What comes out means what
 //! was asked for, or there is an error: nothing is rounded into the nearest register.
+//!
+//! Of an integer, `0x...` is the raw number, before scale and labels: where the scale is 0.1, `0x00C8`
+//! writes 200 and shows as 20.0. A negative one is given by its bits: `0xFFFF` is -1 as i16. It is for
+//! numbers that a manual gives, and that no scale leads to.
 
 mod flags;
 mod number;
@@ -48,6 +52,14 @@ pub enum EncodeError {
         lowest: Decimal,
         /// The highest value.
         highest: Decimal,
+    },
+    /// A raw number that the registers cannot hold.
+    #[error("{found} is not within 0x0 to {highest:#X}, as raw numbers")]
+    RawRange {
+        /// What was given.
+        found: String,
+        /// The highest raw number.
+        highest: u64,
     },
     /// A number that no raw number gives on a scale that is not the same everywhere.
     #[error("{found} is on no step of {scale}")]
@@ -108,9 +120,15 @@ impl Point {
         let raw = self.raw_of(value, scales)?;
         let registers = encode(self.kind, self.order, &raw);
         let registers = registers.ok_or_else(|| self.no_such(value))?;
-        // The marker of no value is a raw number like any other: only reading tells.
-        match self.interpret(&registers, scales) {
-            Ok(_) => Ok(registers),
+        // The marker of no value is a raw number like any other: only reading tells. What was given
+        // raw need not mean anything with this setup.
+        let read = if self.kind.is_integer() && hex(value.trim()).is_some() {
+            self.raw_value(&registers).map(drop)
+        } else {
+            self.interpret(&registers, scales).map(drop)
+        };
+        match read {
+            Ok(()) => Ok(registers),
             Err(missing) => Err(EncodeError::Marker {
                 found: value.to_owned(),
                 missing,
@@ -149,6 +167,10 @@ impl Point {
                 _ => code.into(),
             });
         }
+        if let Some(digits) = hex(value) {
+            return number::from_hex(self.kind, digits, value)
+                .ok_or_else(|| self.no_such(value))?;
+        }
         let figure = Decimal::from_str_exact(value);
         let figure = figure.map_err(|_| self.no_such(value))?;
         number::raw(self, figure, value, scales)
@@ -184,7 +206,7 @@ impl Point {
     }
 
     /// What can be given, in words.
-    fn expected(&self) -> String {
+    pub fn expected(&self) -> String {
         match self.kind {
             RegisterType::Ascii(most) => {
                 format!("text of at most {most} characters, all of them ASCII")
@@ -211,6 +233,13 @@ impl Point {
             },
         }
     }
+}
+
+/// The digits of a number in hex.
+fn hex(value: &str) -> Option<&str> {
+    value
+        .strip_prefix("0x")
+        .or_else(|| value.strip_prefix("0X"))
 }
 
 /// What both kinds of floats can be asked.

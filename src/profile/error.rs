@@ -31,6 +31,14 @@ pub enum Problem {
         /// Line of the first.
         first: usize,
     },
+    /// A second operation that has what another has.
+    #[error("there is an operation of this {what} in line {first} already")]
+    DuplicateOperation {
+        /// What both have.
+        what: &'static str,
+        /// Line of the first.
+        first: usize,
+    },
     /// Two points on the same registers, neither of them read alone.
     #[error("{range} overlaps {other} in line {line}; if both are meant, set alone = true on one")]
     Overlap {

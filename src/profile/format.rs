@@ -13,9 +13,10 @@
 //!
 //! [limits]                      # every key can be left out
 //! highest_unit = 247            # 247, or 255 where the meter uses the reserved numbers
-//! functions = [3, 4, 6, 8, 16]  # default [3, 4]
+//! functions = [3, 4, 6, 7, 8, 16]  # default [3, 4]; there is 5 as well
 //! interchangeable_reads = true  # functions 03 and 04 read the same registers; default false
-//! broadcast_functions = [6]     # obeyed on address 0; default none
+//! broadcast_functions = [6, 16] # obeyed on address 0; default none
+//! broadcast = "any"             # what may be written there: any (default), or only what is "marked"
 //! loopback_data = "any"         # what function 08 sends back: any (default) or zero alone
 //! read_registers = 125          # the most in one read, 1 to 125
 //! write_registers = 123         # the most in one write, 1 to 123
@@ -98,6 +99,93 @@
 //! scale = [{ raw = [40, 70], factor = 1 }, { raw = [400, 700], factor = 0.1 }]
 //! unit = "Hz"
 //!
+//! [[points]]
+//! name = "com_baud"
+//! address = 0x1300
+//! type = "u16"
+//! access = "read-write"         # the keys below are for what can be written; all can be left out
+//! hazard = "changes how the meter is reached"  # asked about before: completes "this ..."
+//! range = [5, 100]
+//! step = 5                      # the raw number is a multiple of this
+//! also = [65535]                # raw numbers that it takes besides those of range and step
+//! write_function = 16           # the one function that writes it; 6 for one register alone
+//! broadcast = "allowed"         # may be written to all meters at once; "only": in no other way
+//! writable_with = { point = "backlight", codes = [0] }  # refused while it holds anything else
+//!
+//! [[points]]
+//! name = "demand_period"
+//! address = 0x1301
+//! type = "u16"
+//! access = "read-write"
+//! allowed = [1, 5, 15]          # the only raw numbers it takes, instead of a step
+//!
+//! [[points]]
+//! name = "channel"
+//! address = 0x1310
+//! type = "u16"
+//! access = "read-write"
+//! repeat = 4
+//!
+//! [[points]]
+//! name = "set_time"
+//! address = 0x1302
+//! type = "time"
+//! access = "write"
+//! shown_by = "clock_time"       # where what was written can be read; needed only with "write"
+//!
+//! [[points]]
+//! name = "set_date"
+//! address = 0x1304
+//! type = "date"
+//! access = "write"
+//!
+//! [[points]]
+//! name = "reset_energy"
+//! address = 0x1306
+//! type = "u16"
+//! access = "write"
+//! momentary = true              # does something when written, keeps nothing
+//! moves = true                  # changes how the meter is reached: its address, its port's setting
+//! hazard = "sets the energy counters to zero"
+//!
+//! [[points]]
+//! name = "clock_time"
+//! address = 0x1307
+//! type = "time"
+//!
+//! [clock]                       # the points that set the clock, the date right behind the time
+//! time = "set_time"
+//! date = "set_date"
+//!
+//! [status_bits]                 # what function 07 answers; needs 7 in limits.functions
+//! 0x01 = "alarm"
+//!
+//! [command_registers]           # take operations by number: code, number, data in one write
+//! address = 0x0080              # needs 16 in limits.functions
+//! code = 5                      # what the first of them is to hold
+//!
+//! [[operations]]                # what the meter does when it is told to
+//! name = "test_leds"
+//! number = 26                   # with function 05 or in the command registers
+//! about = "lights LEDs"
+//! hazard = "lights what operators watch"
+//! broadcast = "allowed"         # to all meters at once; "only": in no other way
+//! only_with = { point = "backlight", codes = [1] }  # carried out only while it holds this
+//! data = { type = "bits", labels = { 0x1 = "alarm" }, about = "which" }  # behind the number;
+//!                               # also range, as of a point
+//! page = "12"                   # and verified, as of a point
+//!
+//! [[operations]]
+//! name = "clear_energy"
+//! register = 0x1306             # or by a value in a register, with 6 or 16; without a hazard of its
+//! value = 1                     # own it has that of the point there
+//! about = "starts the energy counters anew"
+//!
+//! [[distinct]]                  # of these points no two may hold the same
+//! of = ["channel_*"]            # names and globs; points of one register
+//! except = [65535]              # raw numbers that several may hold
+//! about = "a channel gives one quantity"
+//!
 //! [[identities]]                # what must hold on a live meter: `meters verify` tests it
 //! near = "frequency"            # or one of the five below
 //! one_of = [50, 60]
@@ -110,6 +198,7 @@
 //! ```
 
 mod keys;
+mod operations;
 
 use std::collections::BTreeMap;
 
@@ -117,6 +206,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 pub use keys::{LabelsKey, Number, OperandKey, ScaleKey};
+pub use operations::{ClockTable, CommandRegistersTable, DataTable, DistinctTable, OperationTable};
 
 /// The whole file.
 #[derive(Debug, Deserialize)]
@@ -139,6 +229,13 @@ pub struct ProfileFile {
     pub(super) points: Vec<PointTable>,
     #[serde(default)]
     pub(super) identities: Vec<Spanned<IdentityTable>>,
+    #[serde(default)]
+    pub(super) operations: Vec<Spanned<OperationTable>>,
+    pub(super) command_registers: Option<Spanned<CommandRegistersTable>>,
+    pub(super) clock: Option<ClockTable>,
+    pub(super) status_bits: Option<Spanned<LabelTable>>,
+    #[serde(default)]
+    pub(super) distinct: Vec<DistinctTable>,
 }
 
 /// `[line]`.
@@ -160,6 +257,7 @@ pub struct LimitsTable {
     pub(super) interchangeable_reads: bool,
     #[serde(default)]
     pub(super) broadcast_functions: Vec<Spanned<u8>>,
+    pub(super) broadcast: Option<Spanned<String>>,
     pub(super) loopback_data: Option<Spanned<String>>,
     pub(super) read_registers: Option<Spanned<u16>>,
     pub(super) write_registers: Option<Spanned<u16>>,
@@ -205,12 +303,23 @@ pub struct PointTable {
     #[serde(default)]
     pub(super) alone: bool,
     pub(super) function: Option<Spanned<u8>>,
+    pub(super) hazard: Option<Spanned<String>>,
+    pub(super) momentary: Option<Spanned<bool>>,
+    pub(super) moves: Option<Spanned<bool>>,
+    pub(super) step: Option<Spanned<u16>>,
+    pub(super) allowed: Option<Spanned<Vec<Spanned<i64>>>>,
+    pub(super) also: Option<Spanned<Vec<Spanned<i64>>>>,
+    pub(super) write_function: Option<Spanned<u8>>,
+    pub(super) broadcast: Option<Spanned<String>>,
+    pub(super) writable_with: Option<Spanned<OnlyWithTable>>,
+    pub(super) shown_by: Option<Spanned<String>>,
     #[serde(default = "verified")]
     pub(super) verified: bool,
     #[serde(default)]
     pub(super) page: String,
 }
 
+/// Rows are verified unless they say otherwise.
 const fn verified() -> bool {
     true
 }

@@ -1,9 +1,13 @@
 //! The strict loader: TOML text to a checked [`Profile`], or one error with file, line and key.
 
 mod identity;
+mod limits;
+mod operation;
 mod point;
 mod scaling;
 mod syntax;
+mod whole;
+mod writing;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,12 +18,9 @@ use toml::Spanned;
 use wildmatch::WildMatch;
 
 use super::error::{Problem, ProfileError};
-use super::format::{
-    IdentificationTable, LabelTable, LimitsTable, LineTable, PointTable, ProfileFile,
-};
-use super::model::{Group, Identification, Limits, LoopbackData, Profile};
+use super::format::{IdentificationTable, LabelTable, LineTable, PointTable, ProfileFile};
+use super::model::{Group, Identification, Limits, Profile};
 use super::point::{Names, Point};
-use crate::codec::{FunctionCode, ReadFunction, RegisterBlock, RegisterRange, UnitRange};
 use crate::transport::{LineSettings, Parity, StopBits};
 
 pub(super) use point::number as code_number;
@@ -38,11 +39,12 @@ pub(super) fn checked(source: &Source<'_>) -> Result<(ProfileFile, Profile), Pro
     let table: ProfileFile =
         toml::from_str(source.text).map_err(|error| syntax::explain(source, &error))?;
     source.name(&table.name, "name")?;
-    let limits = limits(source, &table.limits)?;
+    let limits = limits::limits(source, &table.limits)?;
     let labels = shared_labels(source, &table.labels)?;
     let points = points(source, &table.points, &labels, &limits)?;
     let factors = scaling::factors(source, &table.factors, &points)?;
     scaling::references(source, &table.points, &points, &factors)?;
+    writing::references(source, &table.points, &points)?;
     let identities = identity::identities(source, &table.identities, &points)?;
     let groups = groups(source, &table.groups, &points)?;
     let identification = table
@@ -50,6 +52,17 @@ pub(super) fn checked(source: &Source<'_>) -> Result<(ProfileFile, Profile), Pro
         .as_ref()
         .map(|table| identification(source, table, &points))
         .transpose()?;
+    let command_registers = whole::command_registers(source, &table, &limits)?;
+    let known = operation::Known {
+        points: &points,
+        labels: &labels,
+        limits: &limits,
+        command_registers,
+    };
+    let operations = operation::operations(source, &table.operations, &known)?;
+    let clock = whole::clock(source, &table, &points)?;
+    let status_bits = whole::status_bits(source, &table, &limits)?;
+    let distinct = whole::distinct(source, &table, &points)?;
     let profile = Profile {
         name: table.name.as_ref().clone(),
         title: table.title.clone(),
@@ -61,11 +74,11 @@ pub(super) fn checked(source: &Source<'_>) -> Result<(ProfileFile, Profile), Pro
         factors,
         points,
         identities,
-        operations: Vec::new(),
-        command_registers: None,
-        clock: None,
-        status_bits: BTreeMap::new(),
-        distinct: Vec::new(),
+        operations,
+        command_registers,
+        clock,
+        status_bits,
+        distinct,
     };
     Ok((table, profile))
 }
@@ -191,135 +204,6 @@ fn line(source: &Source<'_>, table: &LineTable) -> Result<LineSettings, ProfileE
         parity,
         stop_bits,
     })
-}
-
-fn limits(source: &Source<'_>, table: &LimitsTable) -> Result<Limits, ProfileError> {
-    let default = Limits::default();
-    let units = match &table.highest_unit {
-        None => default.units,
-        Some(unit) => match unit.as_ref() {
-            247 => UnitRange::Standard,
-            255 => UnitRange::Extended,
-            _ => return Err(source.value(unit, "limits.highest_unit", "247 or 255")),
-        },
-    };
-    let functions: Vec<FunctionCode> = match &table.functions {
-        None => default.functions,
-        Some(codes) => functions(source, codes)?,
-    };
-    let mut broadcast_functions = Vec::new();
-    for code in &table.broadcast_functions {
-        let key = "limits.broadcast_functions";
-        let function = function(source, code, key)?;
-        if !matches!(code.as_ref(), 5 | 6 | 16) {
-            return Err(source.value(code, key, "5, 6 or 16, a function that writes"));
-        }
-        if !functions.contains(&function) {
-            return Err(source.value(code, key, "one of limits.functions"));
-        }
-        broadcast_functions.push(function);
-    }
-    let loopback_data = loopback_data(source, table, &functions)?;
-    let table_registers = table
-        .table_registers
-        .as_ref()
-        .map(|size| source.bounded(Some(size), "limits.table_registers", 0x8000))
-        .transpose()?;
-    Ok(Limits {
-        units,
-        functions,
-        interchangeable_reads: table.interchangeable_reads,
-        broadcast_functions,
-        broadcasts_marked_only: false,
-        loopback_data,
-        read_registers: source.bounded(
-            table.read_registers.as_ref(),
-            "limits.read_registers",
-            RegisterRange::MOST,
-        )?,
-        write_registers: source.bounded(
-            table.write_registers.as_ref(),
-            "limits.write_registers",
-            RegisterBlock::MOST,
-        )?,
-        read_holes: table.read_holes,
-        table_registers,
-        typical_answer: source.duration(
-            table.typical_answer.as_ref(),
-            "limits.typical_answer",
-            default.typical_answer,
-        )?,
-        longest_answer: longest_answer(source, table, default.longest_answer)?,
-        pause: source.duration(table.pause.as_ref(), "limits.pause", default.pause)?,
-    })
-}
-
-/// What function 08 sends back, which only a meter that has it can say.
-fn loopback_data(
-    source: &Source<'_>,
-    table: &LimitsTable,
-    functions: &[FunctionCode],
-) -> Result<LoopbackData, ProfileError> {
-    let key = "limits.loopback_data";
-    let Some(word) = &table.loopback_data else {
-        return Ok(LoopbackData::default());
-    };
-    let data = match word.as_ref().as_str() {
-        "any" => LoopbackData::Any,
-        "zero" => LoopbackData::Zero,
-        _ => return Err(source.value(word, key, "\"any\" or \"zero\"")),
-    };
-    if functions.contains(&FunctionCode::Diagnostics) {
-        return Ok(data);
-    }
-    Err(source.value(word, key, "of use without 8 in limits.functions"))
-}
-
-/// The time-out where none is asked for, so it is above zero.
-fn longest_answer(
-    source: &Source<'_>,
-    table: &LimitsTable,
-    default: Duration,
-) -> Result<Duration, ProfileError> {
-    let key = "limits.longest_answer";
-    let time = source.duration(table.longest_answer.as_ref(), key, default)?;
-    match &table.longest_answer {
-        Some(text) if time.is_zero() => Err(source.value(text, key, "a time above 0s")),
-        _ => Ok(time),
-    }
-}
-
-fn functions(
-    source: &Source<'_>,
-    codes: &Spanned<Vec<Spanned<u8>>>,
-) -> Result<Vec<FunctionCode>, ProfileError> {
-    let key = "limits.functions";
-    let functions: Vec<FunctionCode> = codes
-        .as_ref()
-        .iter()
-        .map(|code| function(source, code, key))
-        .collect::<Result<_, _>>()?;
-    let reads = [ReadFunction::HoldingRegisters, ReadFunction::InputRegisters];
-    if !reads
-        .iter()
-        .any(|read| functions.contains(&FunctionCode::from(*read)))
-    {
-        return Err(source.value(codes, key, "a list with 3 or 4 in it, to read with"));
-    }
-    Ok(functions)
-}
-
-fn function(
-    source: &Source<'_>,
-    code: &Spanned<u8>,
-    key: &str,
-) -> Result<FunctionCode, ProfileError> {
-    match FunctionCode::try_from(*code.as_ref()) {
-        Ok(FunctionCode::Other(_)) | Err(_) => {
-            Err(source.value(code, key, "3, 4, 5, 6, 7, 8 or 16"))
-        }
-        Ok(known) => Ok(known),
-    }
 }
 
 /// The tables of `[labels]`, by name.

@@ -9,11 +9,14 @@
 //! * [`builtin`] and [`find`]: the meters inside the program, and where a name or a path leads.
 //! * [`selector`]: what a person types to choose points or raw registers.
 //! * [`plan`]: which requests fetch a set of points in the least time on this line.
+//! * [`assignment`]: what a person types to write them.
+//! * [`write_plan`]: which requests write them.
 //! * [`value`]: what a point's registers mean.
 //! * [`encoding`]: which registers mean that.
 //! * [`writing`]: what may be written, and what a meter does when it is told to.
 
 pub mod advice;
+pub mod assignment;
 pub mod builtin;
 pub mod encoding;
 pub mod error;
@@ -29,6 +32,7 @@ pub mod scaling;
 pub mod selector;
 pub mod setup;
 pub mod value;
+pub mod write_plan;
 pub mod writing;
 
 pub use encoding::EncodeError;

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::model::Profile;
-use super::point::{Labels, Names};
+use super::point::{Labels, Names, Point};
+use super::writing::{Action, Operation};
 
 /// A profile whose labels lie beside it.
 #[derive(Debug, Serialize, Deserialize)]
@@ -22,7 +23,8 @@ struct PackedTable {
     names: Names,
 }
 
-/// The labels of one point, by indices.
+/// The labels of one point, by indices. Behind the points of the profile come those that hold the
+/// data of its operations, an index each operation whether it has data or not.
 #[derive(Debug, Serialize, Deserialize)]
 struct PackedLabels {
     point: usize,
@@ -35,7 +37,12 @@ impl Packed {
     pub fn pack(profile: Profile) -> Self {
         let mut tables: Vec<PackedTable> = Vec::new();
         let mut labels = Vec::new();
-        for (point, found) in profile.points.iter().enumerate() {
+        let points = profile.points.iter().map(Some);
+        let data = profile.operations.iter().map(Operation::data);
+        for (point, found) in points.chain(data).enumerate() {
+            let Some(found) = found else {
+                continue;
+            };
             let (names, are_bits) = match &found.labels {
                 Labels::None => continue,
                 Labels::Codes(names) => (names, false),
@@ -75,9 +82,8 @@ impl Packed {
             .map(|table| (table.name.map(Arc::from), Arc::new(table.names)))
             .collect();
         for label in labels {
-            if let (Some(point), Some((name, names))) =
-                (profile.points.get_mut(label.point), tables.get(label.table))
-            {
+            let place = point_mut(&mut profile, label.point);
+            if let (Some(point), Some((name, names))) = (place, tables.get(label.table)) {
                 point.label_table.clone_from(name);
                 point.labels = if label.are_bits {
                     Labels::Bits(Arc::clone(names))
@@ -87,5 +93,16 @@ impl Packed {
             }
         }
         profile
+    }
+}
+
+/// The point of an index in [`PackedLabels`].
+fn point_mut(profile: &mut Profile, index: usize) -> Option<&mut Point> {
+    let Some(behind) = index.checked_sub(profile.points.len()) else {
+        return profile.points.get_mut(index);
+    };
+    match &mut profile.operations.get_mut(behind)?.action {
+        Action::Number { data, .. } => data.as_deref_mut(),
+        Action::Register { .. } => None,
     }
 }

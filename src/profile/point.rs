@@ -127,7 +127,7 @@ pub struct OnlyWith {
 
 impl OnlyWith {
     /// Whether what the other point holds will do; `None` is a value that is no number.
-    pub(super) fn means_something(&self, setting: Option<i128>) -> bool {
+    pub fn means_something(&self, setting: Option<i128>) -> bool {
         let Some(codes) = &self.codes else {
             return true;
         };

@@ -31,6 +31,8 @@ pub enum Purpose {
     Read,
     /// To be looked up: any point of the meter, and nothing else.
     LookUp,
+    /// To be written: points that can be, and registers by address.
+    Write,
 }
 
 /// Why a selection is not one.
@@ -119,6 +121,12 @@ pub enum SelectError {
         /// The point.
         name: String,
     },
+    /// A point that can only be read.
+    #[error("{name} can only be read")]
+    ReadOnly {
+        /// The point.
+        name: String,
+    },
     /// A register by address, where points are looked up.
     #[error("'{selector}' is no point of {meter}")]
     NoPoint {
@@ -181,7 +189,11 @@ pub struct Reading<'a> {
 impl Reading<'_> {
     /// Whether a point can be chosen.
     fn takes(&self, point: &Point) -> bool {
-        self.purpose == Purpose::LookUp || point.access.readable()
+        match self.purpose {
+            Purpose::Read => point.access.readable(),
+            Purpose::LookUp => true,
+            Purpose::Write => point.access.writable(),
+        }
     }
 }
 
@@ -193,7 +205,7 @@ impl Reading<'_> {
 pub fn select(selectors: &[String], reading: Reading<'_>) -> Result<Vec<Point>, SelectError> {
     let default = match reading.purpose {
         Purpose::Read => [format!("@{}", Profile::DEFAULT_GROUP)],
-        Purpose::LookUp => ["*".to_owned()],
+        Purpose::LookUp | Purpose::Write => ["*".to_owned()],
     };
     let selectors = if selectors.is_empty() {
         is_default_there(reading)?;
@@ -218,7 +230,7 @@ pub fn select(selectors: &[String], reading: Reading<'_>) -> Result<Vec<Point>, 
             Purpose::Read => SelectError::Nothing {
                 reason: format!("{selectors} has no point that can be read"),
             },
-            Purpose::LookUp => SelectError::Empty { selectors },
+            Purpose::LookUp | Purpose::Write => SelectError::Empty { selectors },
         });
     }
     Ok(points)
@@ -238,7 +250,7 @@ fn is_default_there(reading: Reading<'_>) -> Result<(), SelectError> {
     Err(SelectError::Nothing { reason })
 }
 
-fn one(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> {
+pub(super) fn one(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> {
     if selector.starts_with(|first: char| first.is_ascii_digit()) {
         return match (reading.purpose, reading.profile) {
             (Purpose::LookUp, Some(profile)) => Err(SelectError::NoPoint {
@@ -288,9 +300,13 @@ fn one(selector: &str, reading: Reading<'_>) -> Result<Vec<Point>, SelectError> 
     }
     match profile.point(selector) {
         Some(point) if reading.takes(point) => Ok(vec![point.clone()]),
-        Some(point) => Err(SelectError::WriteOnly {
-            name: point.name.clone(),
-        }),
+        Some(point) => {
+            let name = point.name.clone();
+            Err(match reading.purpose {
+                Purpose::Write => SelectError::ReadOnly { name },
+                Purpose::Read | Purpose::LookUp => SelectError::WriteOnly { name },
+            })
+        }
         None => Err(unknown(selector, profile)),
     }
 }
@@ -317,13 +333,16 @@ fn groups(profile: &Profile) -> Vec<String> {
     groups.map(|group| format!("@{}", group.name)).collect()
 }
 
-/// Up to three names that look like `name`, the nearest first.
+/// Up to three names of points that look like `name`, the nearest first.
 pub fn near(name: &str, profile: &Profile) -> Vec<String> {
+    alike(name, profile.points.iter().map(|point| point.name.as_str()))
+}
+
+/// Up to three of these names that look like `name`, the nearest first.
+pub fn alike<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
     const ALIKE: f64 = 0.75;
-    let mut scored: Vec<(f64, &str)> = profile
-        .points
-        .iter()
-        .map(|point| (strsim::jaro_winkler(name, &point.name), point.name.as_str()))
+    let mut scored: Vec<(f64, &str)> = names
+        .map(|known| (strsim::jaro_winkler(name, known), known))
         .filter(|(score, _)| *score >= ALIKE)
         .collect();
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -41,6 +41,17 @@ impl Setup {
         }
     }
 
+    /// The same with further points, of which others depend on what they hold.
+    #[must_use]
+    pub fn with(mut self, points: impl IntoIterator<Item = Point>) -> Self {
+        for point in points {
+            if !self.points.iter().any(|known| known.name == point.name) {
+                self.points.push(point);
+            }
+        }
+        self
+    }
+
     /// The points that others depend on, by name.
     pub fn points(&self) -> &[Point] {
         &self.points

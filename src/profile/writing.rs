@@ -16,6 +16,8 @@ pub struct Writing {
     pub hazard: Option<String>,
     /// It does something when it is written, and does not keep what was written.
     pub momentary: bool,
+    /// It changes how the meter is reached: its address, or the setting of its port.
+    pub moves: bool,
     /// The raw number is a multiple of this; 0 or 1 says nothing.
     pub step: u16,
     /// The only raw numbers it takes, where these are no range.
@@ -36,6 +38,7 @@ pub struct Writing {
 static PLAIN: Writing = Writing {
     hazard: None,
     momentary: false,
+    moves: false,
     step: 0,
     allowed: Vec::new(),
     also: Vec::new(),
@@ -94,6 +97,16 @@ pub struct Operation {
     pub verified: bool,
     /// Page of the manual.
     pub page: String,
+}
+
+impl Operation {
+    /// What goes with it, as a point.
+    pub fn data(&self) -> Option<&Point> {
+        match &self.action {
+            Action::Number { data, .. } => data.as_deref(),
+            Action::Register { .. } => None,
+        }
+    }
 }
 
 /// How a meter is told to do something.

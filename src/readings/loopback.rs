@@ -5,7 +5,6 @@
 //!   for byte, so that an echo alone would pass for a meter.
 //! * [`tally`] is what the tries come to, [`verdict`] what that says of the line; both are pure.
 
-pub mod echo;
 pub mod tally;
 pub mod verdict;
 
@@ -18,7 +17,7 @@ use crate::client::{Client, Failure, Patience};
 use crate::codec::Unit;
 use crate::profile::LoopbackData;
 
-pub use echo::LineEcho;
+pub use super::echo::LineEcho;
 pub use tally::{Noticed, Summary, Tally, Times};
 pub use verdict::Verdict;
 

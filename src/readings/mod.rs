@@ -7,9 +7,11 @@
 //! * [`memory`] keeps what that taught, for as long as the program runs; `lesson` is one such thing.
 //! * [`take`](mod@take) reads a unit with all that belongs to it; `meaning` says what its registers
 //!   mean.
+//! * [`echo`] finds out whether the line sends our own bytes back.
 //! * [`loopback`] sends words to a unit and tells whether the line is good.
 //! * [`verify`] puts readings to the test of physical laws.
 
+pub mod echo;
 pub mod fault;
 mod gather;
 mod harvest;

@@ -11,7 +11,8 @@ use crate::commands::signals::Stop;
 use crate::commands::{CommandError, ExitCode};
 use crate::output::loopback::{LoopbackSink, Subject, lines};
 use crate::readings::Fault;
-use crate::readings::loopback::{LineEcho, Noticed, Tally, attempt, echo};
+use crate::readings::echo;
+use crate::readings::loopback::{LineEcho, Noticed, Tally, attempt};
 use crate::transport::{Clock, SystemClock};
 
 /// A wait is cut into pieces of this length, so that a signal ends it.

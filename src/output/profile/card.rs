@@ -8,6 +8,7 @@ use super::sheet::Sheet;
 use super::terms;
 use crate::codec::value::ByteOrder;
 use crate::output::escape;
+use crate::profile::writing::Broadcasting;
 use crate::profile::{Point, Profile};
 
 /// Name, meaning, and a line for everything else that there is.
@@ -32,6 +33,7 @@ pub(super) fn card(profile: &Profile, point: &Point) -> String {
     if let Some(limits) = point.limits {
         sheet.text("range", &range(point, limits));
     }
+    writing(&mut sheet, point);
     let labels = terms::labels(point).into_iter();
     sheet.lines(
         "labels",
@@ -63,6 +65,47 @@ pub(super) fn card(profile: &Profile, point: &Point) -> String {
         about => format!(": {}", escape(about)),
     };
     format!("{}{about}\n\n{sheet}", point.name)
+}
+
+/// What is to be known before it is written.
+fn writing(sheet: &mut Sheet, point: &Point) {
+    let writing = point.writing();
+    let listed = |numbers: &[i64]| {
+        let numbers = numbers.iter().map(|number| terms::raw(point, *number));
+        numbers.collect::<Vec<String>>()
+    };
+    if writing.step > 1 {
+        sheet.text("step", &format!("{} raw", writing.step));
+    }
+    if !writing.allowed.is_empty() {
+        sheet.list("allowed", listed(&writing.allowed));
+    }
+    if !writing.also.is_empty() {
+        sheet.list("also", listed(&writing.also));
+    }
+    if let Some(hazard) = &writing.hazard {
+        sheet.text("hazard", hazard);
+    }
+    if writing.momentary {
+        sheet.text(
+            "momentary",
+            "does something when it is written, keeps nothing",
+        );
+    }
+    if let Some(code) = terms::write_function(point) {
+        sheet.text("written", &format!("with function {code:02}"));
+    }
+    match writing.broadcast {
+        Broadcasting::Unmarked => {}
+        Broadcasting::Allowed => sheet.text("broadcast", "allowed"),
+        Broadcasting::Only => sheet.text("broadcast", "only, and to no meter by itself"),
+    }
+    if let Some(with) = &writing.only_with {
+        sheet.text("writable", &format!("with {}", terms::setup(with)));
+    }
+    if let Some(shown_by) = &writing.shown_by {
+        sheet.text("shown by", shown_by);
+    }
 }
 
 /// Where it lies, and the request that reads it.

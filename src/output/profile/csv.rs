@@ -7,7 +7,7 @@ use crate::output::csv::records;
 use crate::output::escape;
 use crate::profile::Point;
 
-const HEADER: [&str; 18] = [
+const HEADER: [&str; 27] = [
     "name",
     "address",
     "registers",
@@ -26,6 +26,15 @@ const HEADER: [&str; 18] = [
     "page",
     "about",
     "labels",
+    "step",
+    "allowed",
+    "also",
+    "hazard",
+    "momentary",
+    "write_function",
+    "broadcast",
+    "writable_with",
+    "shown_by",
 ];
 
 /// The header and a row a point.
@@ -38,11 +47,16 @@ pub(super) fn csv(points: &[Point], terminal: bool) -> io::Result<Vec<u8>> {
     records(&HEADER, rows)
 }
 
-fn row(point: &Point) -> [String; 18] {
+fn row(point: &Point) -> [String; 27] {
     let text = |text: Option<&String>| text.cloned().unwrap_or_default();
     let number =
         |number: Option<i128>| number.map_or_else(String::new, |number| number.to_string());
     let yes = |is: bool| if is { "yes" } else { "no" }.to_owned();
+    let numbers = |numbers: &[i64]| {
+        let numbers = numbers.iter().map(i64::to_string);
+        numbers.collect::<Vec<_>>().join("; ")
+    };
+    let writing = point.writing();
     let no_value = point.no_value.as_ref().map(|no_value| {
         let marker = terms::marker(point, no_value);
         format!("{marker} means {}", terms::meaning(no_value))
@@ -74,5 +88,20 @@ fn row(point: &Point) -> [String; 18] {
         point.page.clone(),
         point.about.clone(),
         labels.join("; "),
+        number(Some(writing.step.into()).filter(|step| *step > 1)),
+        numbers(&writing.allowed),
+        numbers(&writing.also),
+        text(writing.hazard.as_ref()),
+        yes(writing.momentary),
+        number(terms::write_function(point).map(i128::from)),
+        terms::broadcast(writing.broadcast)
+            .unwrap_or_default()
+            .to_owned(),
+        writing
+            .only_with
+            .as_ref()
+            .map(terms::setup)
+            .unwrap_or_default(),
+        text(writing.shown_by.as_ref()),
     ]
 }

@@ -8,7 +8,8 @@ use super::terms;
 use crate::codec::FunctionCode;
 use crate::output::escape;
 use crate::profile::identity::Identity;
-use crate::profile::model::{Identification, Limits};
+use crate::profile::model::Identification;
+use crate::profile::writing::{Broadcasting, ClockPoints, CommandRegisters};
 use crate::profile::{LoopbackData, Profile};
 use crate::words::counted;
 
@@ -17,7 +18,8 @@ pub(super) fn head(profile: &Profile) -> String {
     let mut sheet = Sheet::default();
     sheet.text("manual", &profile.manual);
     sheet.text("line", &format!("{} unless told otherwise", profile.line));
-    limits(&mut sheet, &profile.limits);
+    limits(&mut sheet, profile);
+    telling(&mut sheet, profile);
     match &profile.identification {
         None => sheet.text("recognised", "by no register"),
         Some(known) => sheet.list("recognised", recognised(profile, known)),
@@ -64,7 +66,53 @@ fn identities(identities: &[Identity]) -> Vec<String> {
     lines
 }
 
-fn limits(sheet: &mut Sheet, limits: &Limits) {
+/// What it says of status, clock and commands.
+fn telling(sheet: &mut Sheet, profile: &Profile) {
+    if !profile.status_bits.is_empty() {
+        let bits = profile.status_bits.iter();
+        sheet.list(
+            "status bits",
+            bits.map(|(mask, name)| format!("0x{mask:02X}={name}")),
+        );
+    }
+    if let Some(commands) = &profile.command_registers {
+        let CommandRegisters { address, code } = commands;
+        let text = format!("{address} takes {code}, the number of an operation and its data");
+        sheet.text("commands", &text);
+    }
+    if let Some(ClockPoints { time, date }) = &profile.clock {
+        sheet.text("clock", &format!("set by {time} and {date}"));
+    }
+    let rules = profile.distinct.iter().map(|rule| {
+        let except: Vec<String> = rule.except.iter().map(u16::to_string).collect();
+        let except = match except.len() {
+            0 => String::new(),
+            _ => format!(", {} apart", except.join(", ")),
+        };
+        format!("{}{except}: {}", rule.about, rule.points.join(", "))
+    });
+    sheet.lines("distinct", rules);
+}
+
+/// What is marked for all meters at once.
+fn marked(profile: &Profile) -> String {
+    let is_marked = |broadcast| broadcast != Broadcasting::Unmarked;
+    let points = profile.points.iter();
+    let points = points.filter(|point| is_marked(point.writing().broadcast));
+    let operations = profile.operations.iter();
+    let operations = operations.filter(|operation| is_marked(operation.broadcast));
+    let names: Vec<&str> = points
+        .map(|point| point.name.as_str())
+        .chain(operations.map(|operation| operation.name.as_str()))
+        .collect();
+    match names.len() {
+        0 => "of nothing".to_owned(),
+        _ => format!("of {} alone", names.join(", ")),
+    }
+}
+
+fn limits(sheet: &mut Sheet, profile: &Profile) {
+    let limits = &profile.limits;
     sheet.text("units", &format!("1 to {}", limits.units.highest()));
     sheet.list("functions", limits.functions.iter().copied().map(named));
     if limits.interchangeable_reads {
@@ -74,6 +122,9 @@ fn limits(sheet: &mut Sheet, limits: &Limits) {
     match limits.broadcast_functions.len() {
         0 => sheet.text("broadcast", "none"),
         _ => sheet.list("broadcast", broadcast),
+    }
+    if limits.broadcasts_marked_only {
+        sheet.text("", &marked(profile));
     }
     match limits.loopback_data {
         LoopbackData::Any => {}

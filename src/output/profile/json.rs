@@ -1,5 +1,6 @@
 //! A meter as one JSON object, its keys and words those of a profile's file.
 
+mod operations;
 mod point;
 
 use std::collections::BTreeMap;
@@ -12,10 +13,11 @@ use serde::Serialize;
 use crate::codec::FunctionCode;
 use crate::output::json::{Exact, line};
 use crate::profile::identity::{Identity, Law};
+use crate::profile::point::OnlyWith;
 use crate::profile::scaling::{Operand, Rule};
 use crate::profile::{Point, Profile};
 
-/// The object: a line for each key, group, factor, identity and point.
+/// The object: a line for each key, group, factor, point, identity and operation.
 pub(super) fn json(profile: &Profile, points: &[Point]) -> io::Result<String> {
     let groups = profile.groups.iter().map(|group| {
         let members = group.members.iter();
@@ -34,6 +36,10 @@ pub(super) fn json(profile: &Profile, points: &[Point]) -> io::Result<String> {
         .iter()
         .map(|known| line(&identity(known)));
     let points = points.iter().map(|known| line(&point::point(known)));
+    let operations = profile.operations.iter();
+    let operations = operations.map(|known| line(&operations::operation(known)));
+    let distinct = profile.distinct.iter();
+    let distinct = distinct.map(|rule| line(&operations::distinct(rule)));
     let parts = [
         ("name", line(&profile.name)?),
         ("title", line(&profile.title)?),
@@ -45,6 +51,11 @@ pub(super) fn json(profile: &Profile, points: &[Point]) -> io::Result<String> {
         ("factors", lines('{', factors, '}')?),
         ("points", lines('[', points, ']')?),
         ("identities", lines('[', identities, ']')?),
+        ("operations", lines('[', operations, ']')?),
+        ("command_registers", line(&operations::commands(profile))?),
+        ("clock", line(&operations::clock(profile))?),
+        ("status_bits", line(&operations::status_bits(profile))?),
+        ("distinct", lines('[', distinct, ']')?),
     ];
     let parts = parts.map(|(key, value)| format!("\"{key}\": {value}"));
     Ok(format!("{{\n{}\n}}\n", parts.join(",\n")))
@@ -84,6 +95,7 @@ struct LimitsObject {
     functions: Vec<u8>,
     interchangeable_reads: bool,
     broadcast_functions: Vec<u8>,
+    broadcast: &'static str,
     loopback_data: String,
     read_registers: u16,
     write_registers: u16,
@@ -102,6 +114,11 @@ fn limits(profile: &Profile) -> LimitsObject {
         functions: codes(&limits.functions),
         interchangeable_reads: limits.interchangeable_reads,
         broadcast_functions: codes(&limits.broadcast_functions),
+        broadcast: if limits.broadcasts_marked_only {
+            "marked"
+        } else {
+            "any"
+        },
         loopback_data: limits.loopback_data.to_string(),
         read_registers: limits.read_registers,
         write_registers: limits.write_registers,
@@ -119,6 +136,13 @@ struct CodesObject<'a> {
     point: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     codes: Option<&'a [u16]>,
+}
+
+fn codes(with: &OnlyWith) -> CodesObject<'_> {
+    CodesObject {
+        point: &with.point,
+        codes: with.codes.as_deref(),
+    }
 }
 
 fn identification(profile: &Profile) -> Option<CodesObject<'_>> {

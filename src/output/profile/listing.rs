@@ -101,14 +101,9 @@ fn access(point: &Point) -> String {
         Access::Write => "w",
         Access::ReadWrite => "rw",
     };
-    let Some((lowest, highest)) = point.limits else {
-        return access.to_owned();
-    };
-    let [low, high] = [lowest, highest].map(|number| terms::raw(point, number));
-    if low == high {
-        format!("{access} {low}")
-    } else {
-        format!("{access} {low}..{high}")
+    match terms::taken(point) {
+        Some(taken) => format!("{access} {taken}"),
+        None => access.to_owned(),
     }
 }
 
@@ -134,8 +129,8 @@ pub(super) fn formulas(profile: &Profile, points: &[Point]) -> Option<String> {
     (!formulas.is_empty()).then(|| formulas.join("\n") + "\n")
 }
 
-/// What the mark behind some names means.
-pub(super) fn footnote(points: &[Point]) -> Option<String> {
-    let is_marked = points.iter().any(|point| !point.verified);
+/// What the mark behind some names means, where a point has it or something else has.
+pub(super) fn footnote(points: &[Point], is_marked: bool) -> Option<String> {
+    let is_marked = is_marked || points.iter().any(|point| !point.verified);
     is_marked.then(|| format!("{FOOTNOTE}\n"))
 }

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use crate::codec::FunctionCode;
 use crate::profile::point::{Access, Labels, Marker, NoValue, OnlyWith};
 use crate::profile::value::Missing;
+use crate::profile::writing::Broadcasting;
 use crate::profile::{Point, Profile};
 
 /// What its raw number is multiplied with or where it lies; nothing for what is no number.
@@ -33,6 +34,64 @@ pub(super) fn raw(point: &Point, number: impl Into<i128>) -> String {
         number.to_string()
     } else {
         format!("0x{number:04X}")
+    }
+}
+
+/// The longest list of numbers that stands in a table.
+const LONGEST_LIST: usize = 16;
+
+/// The raw numbers that may be written: `0..12000 by 5`, `1..200, 65535`, `8, 32`, of many numbers
+/// that they are some; nothing where that is whatever the type holds.
+pub(super) fn taken(point: &Point) -> Option<String> {
+    let writing = point.writing();
+    let listed = |numbers: &[i64]| {
+        let numbers = numbers.iter().map(|number| raw(point, *number));
+        numbers.collect::<Vec<_>>().join(", ")
+    };
+    if let Some((lowest, highest)) = writing
+        .allowed
+        .iter()
+        .min()
+        .zip(writing.allowed.iter().max())
+    {
+        let list = listed(&writing.allowed);
+        if list.len() <= LONGEST_LIST {
+            return Some(list);
+        }
+        let [low, high] = [lowest, highest].map(|number| raw(point, *number));
+        return Some(format!("some of {low}..{high}"));
+    }
+    let range = point.limits.map(|(lowest, highest)| {
+        let [low, high] = [lowest, highest].map(|number| raw(point, number));
+        if low == high {
+            low
+        } else {
+            format!("{low}..{high}")
+        }
+    });
+    let step = (writing.step > 1).then(|| format!("by {}", writing.step));
+    let steps: Vec<String> = range.into_iter().chain(step).collect();
+    let also = (!writing.also.is_empty()).then(|| listed(&writing.also));
+    let parts: Vec<String> = Some(steps.join(" "))
+        .filter(|steps| !steps.is_empty())
+        .into_iter()
+        .chain(also)
+        .collect();
+    (!parts.is_empty()).then(|| parts.join(", "))
+}
+
+/// The one function it is written with, where it has its own.
+pub(super) fn write_function(point: &Point) -> Option<u8> {
+    let function = point.writing().function?;
+    Some(FunctionCode::from(function).get())
+}
+
+/// What is said of broadcasting it, as in a profile's file.
+pub(super) const fn broadcast(broadcasting: Broadcasting) -> Option<&'static str> {
+    match broadcasting {
+        Broadcasting::Unmarked => None,
+        Broadcasting::Allowed => Some("allowed"),
+        Broadcasting::Only => Some("only"),
     }
 }
 

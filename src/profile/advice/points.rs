@@ -48,7 +48,8 @@ impl Review<'_> {
         let mut written = rows.iter().filter(|row| row.point.access != Access::Read);
         for row in written.clone() {
             let has_bounds = row.point.kind.bounds().is_some();
-            if has_bounds && row.point.limits.is_none() {
+            let is_bounded = row.point.limits.is_some() || !row.point.writing().allowed.is_empty();
+            if has_bounds && !is_bounded {
                 self.tell(&row.place(), row.key("range"), Matter::NoRange);
             }
         }

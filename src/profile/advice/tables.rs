@@ -2,37 +2,61 @@
 
 use std::collections::BTreeSet;
 
-use super::{Matter, Review, Row};
+use super::{Matter, Review};
 use crate::codec::value::RegisterType;
 use crate::profile::format::{LabelTable, LabelsKey};
 use crate::profile::load::code_number;
 
-impl Review<'_> {
+impl<'a> Review<'a> {
     pub(super) fn tables(&mut self) {
         self.labels();
         self.factors();
     }
 
     fn labels(&mut self) {
-        let rows = self.rows.clone();
+        let labelled = self.labelled();
         for (name, table) in &self.file.labels {
-            let users: Vec<&Row<'_>> = rows
+            let mut users = labelled
                 .iter()
-                .filter(|row| matches!(labels(row), Some(LabelsKey::Shared(used)) if used == name.as_ref()))
-                .collect();
+                .filter(|used| matches!(used.labels, LabelsKey::Shared(table) if table == name.as_ref()))
+                .peekable();
             let key = format!("labels.{}", name.as_ref());
-            if users.is_empty() {
+            if users.peek().is_none() {
                 self.tell(&name.span(), &key, Matter::UnusedLabels);
             }
-            if users.into_iter().any(are_bits) {
+            if users.any(|used| used.kind == RegisterType::Bits) {
                 self.bits(table, &key);
             }
         }
-        for row in rows.iter().filter(|row| are_bits(row)) {
-            if let Some(LabelsKey::Own(table)) = labels(row) {
-                self.bits(table, &row.key("labels"));
+        for used in labelled
+            .iter()
+            .filter(|used| used.kind == RegisterType::Bits)
+        {
+            if let LabelsKey::Own(table) = used.labels {
+                self.bits(table, &used.key);
             }
         }
+    }
+
+    /// The labels of all points and of the data of all operations.
+    fn labelled(&self) -> Vec<Use<'a>> {
+        let of_points = self.rows.iter().filter_map(|row| {
+            Some(Use {
+                labels: row.table.labels.as_ref()?.as_ref(),
+                kind: row.point.kind,
+                key: row.key("labels"),
+            })
+        });
+        let of_data = self.file.operations.iter().filter_map(|table| {
+            let table = table.as_ref();
+            let name = table.name.as_ref();
+            Some(Use {
+                labels: table.data.as_ref()?.as_ref().labels.as_ref()?.as_ref(),
+                kind: self.profile.operation(name)?.data()?.kind,
+                key: format!("operations.{name}.data.labels"),
+            })
+        });
+        of_points.chain(of_data).collect()
     }
 
     /// Names for more than one bit; 0 is that of none at all.
@@ -62,10 +86,9 @@ impl Review<'_> {
     }
 }
 
-fn labels<'a>(row: &Row<'a>) -> Option<&'a LabelsKey> {
-    row.table.labels.as_ref().map(toml::Spanned::as_ref)
-}
-
-fn are_bits(row: &Row<'_>) -> bool {
-    row.point.kind == RegisterType::Bits
+/// Labels where they are used.
+struct Use<'a> {
+    labels: &'a LabelsKey,
+    kind: RegisterType,
+    key: String,
 }

@@ -4,10 +4,39 @@ use rust_decimal::Decimal;
 use rust_decimal::prelude::ToPrimitive;
 
 use super::EncodeError;
+use crate::codec::value::RegisterType;
 use crate::profile::point::Point;
 use crate::profile::scaling::{Band, Scaling, times, within};
 use crate::profile::setup::Scales;
 use crate::profile::value::Missing;
+
+/// The raw number that these digits in hex are, given as `text`; `None` when they are no digits.
+pub(super) fn from_hex(
+    kind: RegisterType,
+    digits: &str,
+    text: &str,
+) -> Option<Result<i128, EncodeError>> {
+    let is_hex = |digit: char| digit.is_ascii_hexdigit();
+    if digits.is_empty() || !digits.chars().all(is_hex) {
+        return None;
+    }
+    // Integer types have bounds; nothing else comes here.
+    let (lowest, highest) = kind.bounds()?;
+    // Of a signed type every pattern of bits is a number.
+    let patterns = 1_i128 << (16 * u32::from(kind.registers()).min(4));
+    let most = if lowest < 0 { patterns - 1 } else { highest };
+    // More digits than 128 bits are beyond the range as well.
+    let raw = i128::from_str_radix(digits, 16).ok();
+    Some(match raw.filter(|raw| *raw <= most) {
+        Some(raw) if raw > highest => Ok(raw - patterns),
+        Some(raw) => Ok(raw),
+        None => Err(EncodeError::RawRange {
+            found: text.to_owned(),
+            // No type has more than 64 bits.
+            highest: u64::try_from(most).unwrap_or(u64::MAX),
+        }),
+    })
+}
 
 /// The raw number of `figure`, which was given as `text`.
 pub(super) fn raw(

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use super::{SharedLabels, Source, scaling};
+use super::{SharedLabels, Source, scaling, writing};
 use crate::codec::value::RegisterType;
 use crate::codec::{FunctionCode, ReadFunction, RegisterRange};
 use crate::profile::error::{Problem, ProfileError};
-use crate::profile::format::{LabelTable, LabelsKey, NoValueTable, PointTable};
+use crate::profile::format::{LabelTable, LabelsKey, NoValueTable, OnlyWithTable, PointTable};
 use crate::profile::model::Limits;
 use crate::profile::point::{Access, Labels, Marker, Names, NoValue, OnlyWith, Point};
 use crate::profile::value::Missing;
@@ -63,6 +63,7 @@ fn point(
         None => Labels::None,
         Some(labels) => named(source, labels, kind, shared, &key("labels"))?,
     };
+    let access = access(source, row.access.as_ref(), &key("access"))?;
     Ok(Point {
         about: row.about.clone(),
         range,
@@ -70,40 +71,50 @@ fn point(
         order,
         scaling,
         unit: row.unit.clone().filter(|unit| !unit.is_empty()),
-        access: access(source, row.access.as_ref(), &key("access"))?,
+        access,
         limits: row
             .range
             .as_ref()
             .map(|range| writable(source, range, kind, &key("range")))
             .transpose()?,
         labels,
-        label_table: match row.labels.as_ref().map(Spanned::as_ref) {
-            Some(LabelsKey::Shared(name)) => Some(name.as_str().into()),
-            _ => None,
-        },
+        label_table: row.labels.as_ref().and_then(label_table),
         no_value: row
             .no_value
             .as_ref()
             .map(|marker| no_value(source, marker, kind, &key("no_value")))
             .transpose()?,
-        only_with: row.only_with.as_ref().map(|with| OnlyWith {
-            point: with.point.as_ref().clone(),
-            codes: with.codes.as_ref().map(|codes| codes.as_ref().clone()),
-        }),
+        only_with: row.only_with.as_ref().map(only_with),
         alone: row.alone,
         function: row
             .function
             .as_ref()
             .map(|code| read_function(source, code, limits, &key("function")))
             .transpose()?,
-        writing: None,
+        writing: writing::writing(source, row, kind, access, limits)?.map(Box::new),
         verified: row.verified,
         page: row.page.clone(),
         name,
     })
 }
 
-fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
+/// What a point depends on; whether there is such a point is checked when all are known.
+pub(super) fn only_with(table: &OnlyWithTable) -> OnlyWith {
+    OnlyWith {
+        point: table.point.as_ref().clone(),
+        codes: table.codes.as_ref().map(|codes| codes.as_ref().clone()),
+    }
+}
+
+/// The name of the table that labels stand in, where points share it.
+pub(super) fn label_table(labels: &Spanned<LabelsKey>) -> Option<Arc<str>> {
+    match labels.as_ref() {
+        LabelsKey::Shared(name) => Some(name.as_str().into()),
+        LabelsKey::Own(_) => None,
+    }
+}
+
+pub(super) fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(
     source: &Source<'_>,
     text: &Spanned<String>,
     key: String,
@@ -157,7 +168,8 @@ fn access(
     }
 }
 
-fn writable(
+/// The raw numbers that may be written.
+pub(super) fn writable(
     source: &Source<'_>,
     range: &Spanned<Vec<i64>>,
     kind: RegisterType,
@@ -241,7 +253,8 @@ fn raw_marker(
     }
 }
 
-fn named(
+/// Labels, of a type that can have them.
+pub(super) fn named(
     source: &Source<'_>,
     labels: &Spanned<LabelsKey>,
     kind: RegisterType,

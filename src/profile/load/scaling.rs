@@ -387,18 +387,28 @@ pub(super) fn references(
             named(source, low, points, factors, &key("span.low"))?;
             named(source, high, points, factors, &key("span.high"))?;
         }
-        if let Some(OnlyWithTable { point, codes }) = &row.only_with {
-            let key = |part: &str| key(&format!("only_with.{part}"));
-            let at = key("point");
-            let found = named_point(source, point, points, "point", &at)?;
-            match codes {
-                None => plain_point(source, &found, &at)?,
-                Some(codes) if codes.as_ref().is_empty() => {
-                    return Err(source.value(codes, &key("codes"), "a list of codes"));
-                }
-                Some(_) => code_point(source, &found, &at)?,
-            }
+        if let Some(with) = &row.only_with {
+            depends(source, with, points, &key("only_with"))?;
         }
     }
     Ok(())
+}
+
+/// Checks that a point can be read for the sake of another that depends on it.
+pub(super) fn depends(
+    source: &Source<'_>,
+    with: &OnlyWithTable,
+    points: &[Point],
+    key: &str,
+) -> Result<(), ProfileError> {
+    let OnlyWithTable { point, codes } = with;
+    let at = format!("{key}.point");
+    let found = named_point(source, point, points, "point", &at)?;
+    match codes {
+        None => plain_point(source, &found, &at),
+        Some(codes) if codes.as_ref().is_empty() => {
+            Err(source.value(codes, &format!("{key}.codes"), "a list of codes"))
+        }
+        Some(_) => code_point(source, &found, &at),
+    }
 }

@@ -99,17 +99,19 @@ fn in_value(value: &DeValue<'_>, at: &Range<usize>, path: &str) -> Option<String
     match value {
         DeValue::Table(table) => in_table(table, at, path),
         DeValue::Array(items) => items.iter().find_map(|item| {
-            let path = match item.get_ref() {
-                DeValue::Table(point) if path == "points" => {
-                    point.get("name").and_then(|name| name.get_ref().as_str())
-                }
+            let name = || match item.get_ref() {
+                DeValue::Table(row) => row.get("name")?.get_ref().as_str(),
                 _ => None,
-            }
-            .unwrap_or(path);
+            };
+            let path = match (path, name()) {
+                ("points", Some(name)) => name.to_owned(),
+                ("operations", Some(name)) => joined(path, name),
+                _ => path.to_owned(),
+            };
             if item.span() == *at {
-                return Some(path.to_owned());
+                return Some(path);
             }
-            in_value(item.get_ref(), at, path)
+            in_value(item.get_ref(), at, &path)
         }),
         _ => None,
     }

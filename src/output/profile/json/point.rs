@@ -3,7 +3,7 @@
 use rust_decimal::Decimal;
 use serde::{Serialize, Serializer};
 
-use super::{CodesObject, OperandValue, operand};
+use super::{CodesObject, OperandValue, codes, operand};
 use crate::output::json::Exact;
 use crate::output::profile::terms;
 use crate::profile::Point;
@@ -11,7 +11,7 @@ use crate::profile::point::{Marker, NoValue};
 use crate::profile::scaling::{Band, Scaling};
 
 /// Names by their numbers, in the order of these.
-struct Labels<'a>(Vec<(String, &'a str)>);
+pub(super) struct Labels<'a>(pub(super) Vec<(String, &'a str)>);
 
 impl Serialize for Labels<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -39,6 +39,15 @@ pub(super) struct PointObject<'a> {
     only_with: Option<CodesObject<'a>>,
     alone: bool,
     function: Option<u8>,
+    hazard: Option<&'a str>,
+    momentary: bool,
+    step: Option<u16>,
+    allowed: Option<&'a [i64]>,
+    also: Option<&'a [i64]>,
+    write_function: Option<u8>,
+    broadcast: Option<&'static str>,
+    writable_with: Option<CodesObject<'a>>,
+    shown_by: Option<&'a str>,
     verified: bool,
     page: Option<&'a str>,
 }
@@ -77,6 +86,7 @@ struct MarkerObject {
 pub(super) fn point(point: &Point) -> PointObject<'_> {
     let labels = terms::labels(point);
     let (scale, span) = scaling(point);
+    let writing = point.writing();
     PointObject {
         name: &point.name,
         address: point.range.start().get(),
@@ -91,12 +101,18 @@ pub(super) fn point(point: &Point) -> PointObject<'_> {
         range: point.limits.map(|(low, high)| [low, high].map(Exact)),
         labels: (!labels.is_empty()).then_some(Labels(labels)),
         no_value: point.no_value.as_ref().map(marker),
-        only_with: point.only_with.as_ref().map(|with| CodesObject {
-            point: &with.point,
-            codes: with.codes.as_deref(),
-        }),
+        only_with: point.only_with.as_ref().map(codes),
         alone: point.alone,
         function: terms::function(point),
+        hazard: writing.hazard.as_deref(),
+        momentary: writing.momentary,
+        step: Some(writing.step).filter(|step| *step > 1),
+        allowed: Some(writing.allowed.as_slice()).filter(|numbers| !numbers.is_empty()),
+        also: Some(writing.also.as_slice()).filter(|numbers| !numbers.is_empty()),
+        write_function: terms::write_function(point),
+        broadcast: terms::broadcast(writing.broadcast),
+        writable_with: writing.only_with.as_ref().map(codes),
+        shown_by: writing.shown_by.as_deref(),
         verified: point.verified,
         page: filled(&point.page),
     }
@@ -114,7 +130,8 @@ fn marker(no_value: &NoValue) -> MarkerObject {
     }
 }
 
-fn filled(text: &str) -> Option<&str> {
+/// What is not empty.
+pub(super) fn filled(text: &str) -> Option<&str> {
     Some(text).filter(|text| !text.is_empty())
 }
 

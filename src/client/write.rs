@@ -1,0 +1,162 @@
+//! Writes: sent once, and what is known of them afterwards.
+//!
+//! A lost answer does not mean a lost request, and to do a thing twice is another thing: clearing a
+//! counter, closing a relay, setting a clock. So a write has one attempt. Only a unit that says that
+//! it is busy (06) has done nothing and is asked again. All else is told as it is: confirmed, refused,
+//! unknown.
+
+use std::time::Duration;
+
+use log::info;
+use thiserror::Error;
+
+use super::attempt::Asked;
+use super::debts::Next;
+use super::failure::Failure;
+use super::patience::Patience;
+use super::request::BUSY_WAITS;
+use super::transaction::Client;
+use crate::codec::rtu;
+use crate::codec::{Broadcast, ExceptionCode, Reply, Request, Response, Unit, Write};
+use crate::transport::line::Quiet;
+
+/// What a unit has said to a write that it has taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Confirmation {
+    /// It is done.
+    Done,
+    /// It has stored this instead of the value that was sent (function 06).
+    Stored(u16),
+    /// It has taken it and is still at work (exception 05). Whether it will be done is not known.
+    Accepted,
+}
+
+/// A write that is not confirmed.
+#[derive(Debug, Error)]
+pub enum Unwritten {
+    /// It was not sent.
+    #[error("not sent: {0}")]
+    NotSent(Failure),
+    /// The unit, or a gateway before it, has refused it.
+    #[error("the meter refused: {0}")]
+    Refused(ExceptionCode),
+    /// It was sent and may have been carried out or not.
+    #[error("outcome unknown: {0}")]
+    Unknown(Failure),
+}
+
+impl Client {
+    /// Sends a write to one unit, once. What earlier requests may still bring is waited for first, so
+    /// that it is not taken for the answer. Where it is not known whether the line echoes, one copy of
+    /// a write that its answer repeats (functions 05, 06) confirms nothing: ask something else first.
+    ///
+    /// # Errors
+    /// [`Unwritten`] tells what is known of it.
+    pub fn write(
+        &mut self,
+        unit: Unit,
+        write: &Write,
+        patience: Patience,
+    ) -> Result<Confirmation, Unwritten> {
+        let asked = Asked::new(unit, Request::Write(write.clone()), patience);
+        self.regain(patience).map_err(Unwritten::NotSent)?;
+        self.settle(Next::Unlike(unit))
+            .map_err(Unwritten::NotSent)?;
+        if self.is_doubtful(&asked) {
+            self.make_sure(&asked).map_err(Unwritten::NotSent)?;
+        }
+        let give_up = self.line.now() + patience.in_all();
+        let mut busy_waits = BUSY_WAITS.iter();
+        let mut pause = patience.pause;
+        loop {
+            let silent = self.wait_for_silence(&asked, pause);
+            silent.map_err(|failure| {
+                self.count(unit, Some(&failure));
+                Unwritten::NotSent(failure)
+            })?;
+            let result = self.exchange(&asked);
+            self.count(unit, result.as_ref().err());
+            let reply = result.map_err(Unwritten::Unknown)?.reply;
+            self.take(unit, &asked.frame, &reply);
+            let code = match reply {
+                Reply::Normal(response) => return Ok(confirmation(write, &response)),
+                Reply::Exception { code, .. } => code,
+            };
+            match code {
+                ExceptionCode::ACKNOWLEDGE => return Ok(Confirmation::Accepted),
+                // The unit behind the gateway may have carried it out.
+                ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND => {
+                    return Err(Unwritten::Unknown(Failure::Exception(code)));
+                }
+                ExceptionCode::SERVER_DEVICE_BUSY => self.ledger.of(unit).busy += 1,
+                _ => return Err(Unwritten::Refused(code)),
+            }
+            let in_time = |wait: &&Duration| self.line.now() + **wait < give_up;
+            let wait = busy_waits.next().filter(in_time);
+            let Some(wait) = wait.filter(|_| !self.is_stopping()) else {
+                return Err(Unwritten::Refused(code));
+            };
+            info!(
+                "unit {unit}: busy, it has done nothing; writing again in {} ms",
+                wait.as_millis()
+            );
+            pause = pause.max(*wait);
+            self.ledger.of(unit).retries += 1;
+        }
+    }
+
+    /// Sends a write to all units at once, and lets `turnaround` pass, in which they carry it out and
+    /// say nothing (SL 2.4.1: usually 100 to 200 ms). It is never repeated.
+    ///
+    /// # Errors
+    /// [`Unwritten`], of which no unit can be the cause.
+    pub fn broadcast(
+        &mut self,
+        write: &Write,
+        turnaround: Duration,
+        patience: Patience,
+    ) -> Result<(), Unwritten> {
+        self.regain(patience).map_err(Unwritten::NotSent)?;
+        // Whoever is late would be talked over, and would not hear it.
+        self.settle(Next::Nothing).map_err(Unwritten::NotSent)?;
+        let pause = if self.sent {
+            patience.pause
+        } else {
+            Duration::ZERO
+        };
+        let quiet = self.line.wait_quiet(pause, patience.timeout);
+        match quiet.map_err(|lost| Unwritten::NotSent(lost.into()))? {
+            Quiet::Reached { .. } => {}
+            Quiet::Never { discarded } => {
+                return Err(Unwritten::NotSent(Failure::NeverQuiet { discarded }));
+            }
+        }
+        let frame = rtu::encode_broadcast(Broadcast, write);
+        let unknown = |lost| Unwritten::Unknown(Failure::Port(lost));
+        let sent = self.line.send(frame.as_bytes()).map_err(unknown)?;
+        self.sent = true;
+        let until = sent + turnaround;
+        let mut heard = Vec::new();
+        loop {
+            let left = until.saturating_sub(self.line.now());
+            if left.is_zero() {
+                break;
+            }
+            self.line.receive_into(&mut heard, left).map_err(unknown)?;
+            heard.clear();
+        }
+        Ok(())
+    }
+}
+
+/// What an answer says that belief has let pass.
+fn confirmation(write: &Write, response: &Response) -> Confirmation {
+    match (write, response) {
+        (Write::Register { value, .. }, Response::Register { value: stored, .. })
+            if value != stored =>
+        {
+            Confirmation::Stored(*stored)
+        }
+        _ => Confirmation::Done,
+    }
+}

@@ -1,0 +1,105 @@
+//! `--verify-units`: which meters hold what was broadcast.
+
+use std::time::Duration;
+
+use jiff::Timestamp;
+use jiff::civil::Time;
+
+use super::message::Message;
+use crate::client::Client;
+use crate::codec::Unit;
+use crate::codec::value::RegisterType;
+use crate::commands::ExitCode;
+use crate::commands::asking::Asking;
+use crate::commands::open_line::LinePlan;
+use crate::commands::report::{self, Report};
+use crate::commands::signals::Stop;
+use crate::profile::{Limits, Point, Profile, Scales, Value};
+
+/// A clock that was set this far from now is right: as much as a meter may lose between hearing and
+/// obeying, and the seconds it may show without their parts.
+const CLOCK_TOLERANCE: Duration = Duration::from_secs(2);
+
+const DAY: Duration = Duration::from_secs(24 * 60 * 60);
+
+/// Something that was broadcast, at a time.
+pub(super) struct Sent<'a> {
+    pub(super) message: &'a Message<'a>,
+    pub(super) at: Timestamp,
+    pub(super) line: &'a LinePlan<'a>,
+    pub(super) profile: Option<&'a Profile>,
+}
+
+/// Reads every unit and says which of them hold what was sent.
+pub(super) fn all(
+    sent: &Sent<'_>,
+    units: &[Unit],
+    client: &mut Client,
+    stop: &Stop,
+    report: &mut Report,
+) -> ExitCode {
+    let Sent {
+        message,
+        at,
+        line,
+        profile,
+    } = *sent;
+    let points = message.shown();
+    let limits = profile.map_or_else(Limits::default, |profile| profile.limits.clone());
+    let asking = Asking::new(line, profile, &points, limits.read_function());
+    let mut code = ExitCode::Done;
+    for unit in units.iter().copied() {
+        if stop.requested().is_some() {
+            break;
+        }
+        let taken = asking.ask(unit, client, report);
+        // What it should hold by now: a clock goes on.
+        let now = client.utc_now();
+        let since = Duration::try_from(now.duration_since(at)).unwrap_or_default();
+        let changes = message.changes(now, since).unwrap_or_default();
+        for ((point, change), reading) in changes.iter().zip(&taken.row.readings) {
+            let place = format!("unit {unit} on {}, {}", asking.line, change.point.name);
+            let wanted = change
+                .point
+                .interpret(&change.registers, &Scales::default());
+            match (reading, wanted) {
+                (Ok(found), Ok(wanted)) if is_same(point, found, &wanted) => {
+                    let name = &change.point.name;
+                    report.success(&format!("unit {unit}: {name} is {}", shown(point, found)));
+                }
+                (Ok(found), _) => {
+                    report::problem(&place, &format!("was sent, and the meter holds {found}"));
+                    code = ExitCode::WriteUnknown;
+                }
+                (Err(fault), _) => {
+                    report::problem(
+                        &place,
+                        &format!("was sent, and could not be read ({fault})"),
+                    );
+                    code = ExitCode::WriteUnknown;
+                }
+            }
+        }
+    }
+    code
+}
+
+/// Whether a point holds what it should; a clock goes on while it is read.
+fn is_same(point: &Point, found: &Value, wanted: &Value) -> bool {
+    if point.kind != RegisterType::Time {
+        return found == wanted;
+    }
+    let time = |value: &Value| value.to_string().parse::<Time>().ok();
+    let (Some(found), Some(wanted)) = (time(found), time(wanted)) else {
+        return false;
+    };
+    let apart = found.duration_until(wanted).unsigned_abs();
+    apart <= CLOCK_TOLERANCE || apart + CLOCK_TOLERANCE >= DAY
+}
+
+fn shown(point: &Point, value: &Value) -> String {
+    match &point.unit {
+        Some(unit) => format!("{value} {unit}"),
+        None => value.to_string(),
+    }
+}
