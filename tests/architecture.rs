@@ -12,18 +12,23 @@ use std::path::{Path, PathBuf};
 use support::paths::{modules, paths};
 
 /// What each module, and each file directly in `src/`, may import from besides itself.
-const LAYERS: [(&str, &[&str]); 13] = [
+const LAYERS: [(&str, &[&str]); 14] = [
     ("codec", &[]),
     ("transport", &["codec"]),
     ("profile", &["codec", "transport"]),
     ("client", &["codec", "transport", "words"]),
     ("sim", &["codec", "transport", "profile", "words"]),
     ("readings", &["codec", "client", "profile", "words"]),
-    ("output", &["codec", "profile", "readings", "words"]),
+    ("append", &["transport"]),
+    (
+        "output",
+        &["append", "codec", "profile", "readings", "words"],
+    ),
     ("cli", &[]),
     (
         "commands",
         &[
+            "append",
             "cli",
             "client",
             "codec",
@@ -72,7 +77,12 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
     ("rust_decimal", EVERYWHERE),
     (
         "rustix",
-        &["transport/lock.rs", "transport/pty.rs", "transport/pty/"],
+        &[
+            "append/system.rs",
+            "transport/lock.rs",
+            "transport/pty.rs",
+            "transport/pty/",
+        ],
     ),
     ("serde", EVERYWHERE),
     ("serde_json", &["output/json.rs"]),

@@ -82,7 +82,7 @@ fn every_example_that_needs_no_adapter_runs() {
             ran += 1;
         }
     }
-    assert_eq!(ran, 10);
+    assert_eq!(ran, 12);
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod logging;
 mod loopback;
 mod meters;
 mod open_line;
+mod outlet;
 mod ports;
 mod read_registers;
 mod report;
