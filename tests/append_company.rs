@@ -169,13 +169,13 @@ fn a_file_at_its_limit_stays_as_it_is_and_the_rows_are_on_stderr() {
 #[test]
 fn rows_that_are_not_written_weigh_more_than_readings_that_are_missing() {
     let folder = Folder::new("append-both");
-    let points = "read-registers -p sim: -a 17,18 0 -t 10ms --retries 0 -q -o";
+    let points = "read-registers -p sim: -a 17,18 0 -t 300ms --retries 0 -q -o";
     let output = shell(&folder, "ulimit -f 0", points);
     assert_eq!(output.status.code(), Some(7));
     let stderr = String::from_utf8(output.stderr).expect("text");
     assert_eq!(
         without_times(&stderr),
-        "error: unit 18 on sim: at 9600 8N1, registers 0x0000+1: no answer within 10ms\n\
+        "error: unit 18 on sim: at 9600 8N1, registers 0x0000+1: no answer within 300ms\n\
          error: the readings were taken, and cannot be written\n  \
          because: rows.csv: the rows cannot be written\n  \
          because: File too large (os error 27)\n\

@@ -63,10 +63,10 @@ fn every_format_of_lines_goes_into_a_file_as_it_goes_to_stdout() {
 #[test]
 fn a_run_of_several_units_is_rows_in_their_order_and_missing_ones_are_rows_too() {
     let folder = Folder::new("append-units");
-    Program::new("read-registers -p sim: -a 17,18 0 -o rows.csv -t 10ms --retries 0 -q")
+    Program::new("read-registers -p sim: -a 17,18 0 -o rows.csv -t 300ms --retries 0 -q")
         .folder(folder.path())
         .code(1)
-        .stderr("error: unit 18 on sim: at 9600 8N1, registers 0x0000+1: no answer within 10ms\n")
+        .stderr("error: unit 18 on sim: at 9600 8N1, registers 0x0000+1: no answer within 300ms\n")
         .run();
     let expected = "time,meter,unit_id,status,0x0000\n<time>,,17,ok,65\n<time>,,18,timeout,\n";
     holds(&folder, "rows.csv", expected);
