@@ -157,10 +157,11 @@ impl Appender {
         tell: &mut dyn FnMut(&Path, &Removed),
     ) -> Result<(), Problem> {
         for _ in 0..TRIES {
-            let (mut file, is_new) = match system::open(path)? {
-                Some(file) => (file, false),
-                None => (system::make(path)?, true),
+            let (mut file, folders) = match system::open(path)? {
+                Some(file) => (file, Vec::new()),
+                None => system::make(path)?,
             };
+            let is_new = !folders.is_empty();
             self.lock(&file)?;
             // Somebody may have moved it away while the lock was waited for.
             if !system::is_at(&file, path)? {
@@ -171,7 +172,7 @@ impl Appender {
             let result = commit(&mut file, start, lines, options.syncing, &mut tell);
             match result {
                 Err(_) if is_new => system::unmake(&file, path),
-                Ok(()) if is_new && options.syncing == Syncing::Each => system::sync_folder(path),
+                Ok(()) if options.syncing == Syncing::Each => system::sync_folders(&folders),
                 _ => {}
             }
             // Closing gives the lock back.

@@ -2,7 +2,7 @@
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::error::Problem;
 
@@ -21,15 +21,30 @@ pub(super) fn open(path: &Path) -> Result<Option<File>, Problem> {
     }
 }
 
-/// Makes a file, and the folders it is in; opens one that somebody else has just made.
-pub(super) fn make(path: &Path) -> Result<File, Problem> {
-    let folder = folder(path);
-    fs::create_dir_all(folder).map_err(|source| Problem::NoPlace {
-        folder: folder.to_owned(),
+/// Makes a file, and the folders it is in; opens one that somebody else has just made. Returns as
+/// well which folders have a new name in them.
+pub(super) fn make(path: &Path) -> Result<(File, Vec<PathBuf>), Problem> {
+    let own = folder(path);
+    let mut folders = vec![own.to_owned()];
+    let mut missing = own;
+    while !missing.exists() && folder(missing) != missing {
+        missing = folder(missing);
+        folders.push(missing.to_owned());
+    }
+    fs::create_dir_all(own).map_err(|source| Problem::NoPlace {
+        folder: own.to_owned(),
         source,
     })?;
     let file = options().create(true).open(path).map_err(Problem::Open)?;
-    checked(file)
+    Ok((checked(file)?, folders))
+}
+
+/// Brings new names in folders to the disk. The rows are there in any case; and some file systems
+/// take no such request, for theirs are.
+pub(super) fn sync_folders(folders: &[PathBuf]) {
+    for folder in folders {
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    }
 }
 
 /// Removes a file that was made for rows that could not be written. Its lock is ours, so nobody has
@@ -60,12 +75,6 @@ pub(super) fn may_make(path: &Path) -> Result<(), Problem> {
             },
         }
     }
-}
-
-/// Brings the name of a new file to the disk. The rows are there in any case; and some file systems
-/// take no such request, for theirs are.
-pub(super) fn sync_folder(path: &Path) {
-    let _ = File::open(folder(path)).and_then(|folder| folder.sync_all());
 }
 
 /// The folder a path is in.
