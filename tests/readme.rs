@@ -82,7 +82,7 @@ fn every_example_that_needs_no_adapter_runs() {
             ran += 1;
         }
     }
-    assert_eq!(ran, 18);
+    assert_eq!(ran, 20);
 }
 
 #[test]
