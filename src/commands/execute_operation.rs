@@ -149,7 +149,7 @@ impl Task<'_> {
         let deed = Deed {
             place: &place,
             name: &operation.name,
-            what: &format!("{}:", operation.name),
+            value: None,
             done: "done",
             find_out: None,
         };

@@ -13,7 +13,7 @@ use crate::client::Client;
 use crate::codec::{Request, Unit, rtu};
 use crate::output::changes::{Line, table};
 use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, in_pieces};
-use crate::profile::{Limits, Point, Scales, find};
+use crate::profile::{Limits, Scales, find};
 use crate::readings::Fault;
 use crate::writing::{Before, before, carry_out, check};
 
@@ -146,13 +146,13 @@ impl Task<'_> {
         let verified = !self.arguments.no_verify && !is_over();
         let inquiry = verified.then_some((&inquiry, &mut memory));
         let fates = check(client, &changes, replies, inquiry, &before.scales);
+        let find_out = self.find_out(unit);
         for (change, fate) in changes.iter().zip(&fates) {
             let name = &change.point.name;
-            let find_out = self.find_out(unit, &change.point);
             let deed = Deed {
                 place: &place,
                 name,
-                what: &format!("{name}: {}", shown(change, &before.scales)),
+                value: Some(&shown(change, &before.scales)),
                 done: "written",
                 find_out: find_out.as_deref(),
             };
@@ -206,9 +206,11 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// The command that shows what a point holds.
-    fn find_out(&self, unit: Unit, point: &Point) -> Option<String> {
-        if !point.access.readable() {
+    /// The command that shows what was written; `None` where nothing of it can be read.
+    fn find_out(&self, unit: Unit) -> Option<String> {
+        let points = self.asking.points.iter();
+        let names: Vec<&str> = points.map(|point| point.name.as_str()).collect();
+        if names.is_empty() {
             return None;
         }
         let port = self.arguments.line.port.as_deref().unwrap_or_default();
@@ -218,7 +220,7 @@ impl Task<'_> {
             .unwrap_or_default();
         Some(format!(
             "meterpoll read-registers -p {port} -a {unit}{meter} {}",
-            point.name
+            names.join(" ")
         ))
     }
 }
