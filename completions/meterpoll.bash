@@ -964,7 +964,7 @@ _meterpoll() {
             return 0
             ;;
         meterpoll__subcmd__read__subcmd__registers)
-            opts="-a -f -p -b -P -s -t -q -v -h -V --unit --meter --function --numbering --format --layout --units --dry-run --plan --port --baud --parity --stop-bits --timeout --retries --pause --settle --wait --echo --quiet --verbose --help --version"
+            opts="-a -f -o -p -b -P -s -t -q -v -h -V --unit --meter --function --numbering --format --layout --units --output --on-schema-change --no-sync --dry-run --plan --port --baud --parity --stop-bits --timeout --retries --pause --settle --wait --echo --quiet --verbose --help --version"
             if [[ ${cur} == -* || ${COMP_CWORD} -eq 2 ]] ; then
                 COMPREPLY=( $(compgen -W "${opts}" -- "${cur}") )
                 return 0
@@ -991,15 +991,27 @@ _meterpoll() {
                     return 0
                     ;;
                 --format)
-                    COMPREPLY=($(compgen -W "table csv json jsonl" -- "${cur}"))
+                    COMPREPLY=($(compgen -W "table csv json jsonl influx" -- "${cur}"))
                     return 0
                     ;;
                 -f)
-                    COMPREPLY=($(compgen -W "table csv json jsonl" -- "${cur}"))
+                    COMPREPLY=($(compgen -W "table csv json jsonl influx" -- "${cur}"))
                     return 0
                     ;;
                 --layout)
                     COMPREPLY=($(compgen -W "wide long" -- "${cur}"))
+                    return 0
+                    ;;
+                --output)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                -o)
+                    COMPREPLY=($(compgen -f "${cur}"))
+                    return 0
+                    ;;
+                --on-schema-change)
+                    COMPREPLY=($(compgen -W "refuse new-file" -- "${cur}"))
                     return 0
                     ;;
                 --port)

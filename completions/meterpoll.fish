@@ -45,12 +45,16 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l f
 4\t'Read Input Registers'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l numbering -d 'How register numbers are written' -r -f -a "protocol\t'Addresses as on the wire, from 0'
 modicon\t'30001 or 300001 for input registers, 40001 or 400001 for holding registers'"
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s f -l format -d 'How readings are printed' -r -f -a "table\t'For people'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s f -l format -d 'How readings are printed [default: table; with --output csv]' -r -f -a "table\t'For people'
 csv\t'Comma-separated values with a header'
 json\t'One array of objects, one a reading'
-jsonl\t'One object a line, one a reading'"
+jsonl\t'One object a line, one a reading'
+influx\t'Influx line protocol, a line a row'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l layout -d 'Shape of CSV [default: wide]' -r -f -a "wide\t'A row a meter, a column a point'
 long\t'A row a reading'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s o -l output -d 'Append the rows to this file and print none: as csv, or jsonl or influx with --format' -r -F
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l on-schema-change -d 'What to do about a file with other columns, or that holds something else' -r -f -a "refuse\t'Write nothing, and end with code 7'
+new-file\t'Go on in name.2.csv, name.3.csv and on, the first that fits'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
@@ -67,6 +71,7 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l e
 on\t'The line echoes'
 off\t'The line does not echo'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l units -d 'Put units into the header of wide CSV'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l no-sync -d 'Leave it to the system when rows reach the disk: less wear of flash memory, and a power cut can take the last ones'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l dry-run -d 'Print the requests in hex and send nothing'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l plan -d 'Print the requests with the registers, points and time of each, and send nothing'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'

@@ -12,22 +12,24 @@ use std::path::{Path, PathBuf};
 use support::paths::{modules, paths};
 
 /// What each module, and each file directly in `src/`, may import from besides itself.
-const LAYERS: [(&str, &[&str]); 14] = [
+const LAYERS: [(&str, &[&str]); 15] = [
     ("codec", &[]),
     ("transport", &["codec"]),
     ("profile", &["codec", "transport"]),
     ("client", &["codec", "transport", "words"]),
     ("sim", &["codec", "transport", "profile", "words"]),
     ("readings", &["codec", "client", "profile", "words"]),
+    ("append", &["transport"]),
     ("writing", &["client", "codec", "profile", "readings"]),
     (
         "output",
-        &["codec", "profile", "readings", "words", "writing"],
+        &["append", "codec", "profile", "readings", "words"],
     ),
     ("cli", &[]),
     (
         "commands",
         &[
+            "append",
             "cli",
             "client",
             "codec",
@@ -77,7 +79,12 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
     ("rust_decimal", EVERYWHERE),
     (
         "rustix",
-        &["transport/lock.rs", "transport/pty.rs", "transport/pty/"],
+        &[
+            "append/system.rs",
+            "transport/lock.rs",
+            "transport/pty.rs",
+            "transport/pty/",
+        ],
     ),
     ("serde", EVERYWHERE),
     ("serde_json", &["output/json.rs"]),

@@ -213,6 +213,9 @@ fn a_restart_is_a_second_of_silence_in_which_nothing_is_lost() {
     assert_eq!(answer(&mut meter, frame::STATUS_REQUEST, soon), None);
     assert_eq!(answer(&mut meter, frame::SET_CT, soon), None);
     let later = now() + seconds(1);
+    // The register takes nothing else.
+    assert_eq!(write(&mut meter, 0x0A00, 0, later), Some(2));
+    assert_eq!(write_many(&mut meter, 0x0A00, &[0xFFFF, 0], later), Some(2));
     assert_eq!(read(&mut meter, 0x0A00, 6, later), before);
     assert_eq!(read(&mut meter, 0x0902, 1, later), Ok(vec![400]));
 }

@@ -14,6 +14,7 @@ mod logging;
 mod loopback;
 mod meters;
 mod open_line;
+mod outlet;
 mod ports;
 mod read_registers;
 mod read_status;

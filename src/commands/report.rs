@@ -4,9 +4,11 @@ use std::collections::BTreeSet;
 use std::error::Error;
 use std::fmt;
 use std::io::{self, Write};
+use std::path::Path;
 
 use super::trouble::{self, Place};
 use super::{CommandError, ExitCode};
+use crate::append::{Misfit, Problem, Removed};
 use crate::cli::Usage;
 use crate::client::Failure;
 use crate::codec::{AddressError, ExceptionCode};
@@ -66,6 +68,11 @@ impl Report {
             say(format_args!("error: {error}"));
             causes(error);
             self.hint(hint(error));
+            if let CommandError::Unwritten { lines, .. } = error {
+                for line in lines.lines() {
+                    say(format_args!("not written: {line}"));
+                }
+            }
         }
         exit_code(error)
     }
@@ -181,6 +188,11 @@ pub(super) fn unknown(place: &str, failure: &Failure) {
     causes(failure);
 }
 
+/// Prints what was cut off a file, even when little is wanted: it may be gone for good.
+pub(super) fn removed(file: &Path, removed: &Removed) {
+    say(format_args!("{}: {removed}", file.display()));
+}
+
 /// Writes a line to stderr, made safe for a terminal: it may quote a file or a meter. Where stderr
 /// does not take it, there is nobody to tell, and the readings still go out.
 fn say(line: fmt::Arguments<'_>) {
@@ -242,7 +254,9 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::Ports(_)
         | CommandError::Pty(_)
         | CommandError::Listen(_) => ExitCode::Port,
-        CommandError::Output(_) => ExitCode::Output,
+        CommandError::Append(_) | CommandError::Unwritten { .. } | CommandError::Output(_) => {
+            ExitCode::Output
+        }
     }
 }
 
@@ -332,6 +346,9 @@ fn hint(error: &CommandError) -> Option<String> {
         CommandError::FaultNotShown { .. } => "rtu+tcp:// and ptys show all faults",
         CommandError::Open(error) => return open_hint(error),
         CommandError::Lost(_) => LOST_HINT,
+        CommandError::Append(error) | CommandError::Unwritten { error, .. } => {
+            return append_hint(&error.problem).map(str::to_owned);
+        }
         _ => return None,
     };
     Some(text.to_owned())
@@ -362,6 +379,30 @@ fn select_hint(error: &SelectError) -> Option<String> {
         _ => return None,
     };
     Some(text.to_owned())
+}
+
+fn append_hint(problem: &Problem) -> Option<&'static str> {
+    Some(match problem {
+        Problem::Misfit(Misfit::OpenQuote { .. }) => {
+            "close the quote, or go on in another file: --on-schema-change new-file"
+        }
+        Problem::Misfit(_) => {
+            "the file is as it was; --on-schema-change new-file goes on in another, name.2.csv"
+        }
+        Problem::Device => {
+            "without --output rows go to stdout, from where a shell leads them anywhere"
+        }
+        Problem::Locked { .. } => {
+            "look at what has it open (`fuser FILE` tells); nothing is written without the lock"
+        }
+        Problem::Lock(_) => {
+            "some network file systems have no locks: take a folder on a disk of this machine"
+        }
+        Problem::Write { .. } | Problem::Short { .. } | Problem::Sync { .. } => {
+            "make room on the disk, or look for a limit: `df`, `quota`, `ulimit -f`"
+        }
+        _ => return None,
+    })
 }
 
 fn open_hint(error: &OpenError) -> Option<String> {

@@ -5,12 +5,14 @@
 //!
 //! A second SIGHUP does not: for a window that is closed one comes from the system and one from the
 //! shell, with no time between them.
+//!
+//! SIGXFSZ ends nothing: what cannot be written is told as such.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 #[cfg(unix)]
-use signal_hook::consts::SIGHUP;
+use signal_hook::consts::{SIGHUP, SIGXFSZ};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
@@ -68,8 +70,13 @@ impl Stop {
             }
         }
         #[cfg(unix)]
-        if !ignores_hang_ups() {
-            note(SIGHUP, ExitCode::HungUp);
+        {
+            if !ignores_hang_ups() {
+                note(SIGHUP, ExitCode::HungUp);
+            }
+            // Or else a file that has come to its limit (`ulimit -f`) ends the program without a
+            // word; so writing to it fails.
+            let _ = flag::register(SIGXFSZ, Arc::default());
         }
         Self {
             code,
