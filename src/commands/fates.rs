@@ -123,6 +123,11 @@ impl Deed<'_> {
                 report.failure(&format!("{at}: not sent"), failure);
                 ExitCode::of(0, &[Fault::from(failure)])
             }
+            // Whatever stopped it says what to end with.
+            Unwritten::Stopped => {
+                report::problem(&at, &why.to_string());
+                ExitCode::Done
+            }
             Unwritten::Refused(code) => {
                 report.refused(&at, *code);
                 ExitCode::Refused

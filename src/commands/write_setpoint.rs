@@ -48,11 +48,10 @@ pub(super) fn run(
         stop: None,
         outcome: Outcome::default(),
     };
-    let result = task.all(&units, &mut client, report);
+    task.all(&units, &mut client, report);
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
     // lost has none.
     let _ = client.finish();
-    result?;
     let stopped = task.stop.as_ref().and_then(Stop::requested);
     Ok(task.outcome.code(stopped))
 }
@@ -81,21 +80,19 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    fn all(
-        &mut self,
-        units: &[Unit],
-        client: &mut Client,
-        report: &mut Report,
-    ) -> Result<(), CommandError> {
+    fn all(&mut self, units: &[Unit], client: &mut Client, report: &mut Report) {
         for (index, unit) in units.iter().copied().enumerate() {
-            let is_lost = self.unit(unit, client, report)?;
+            let is_over = self.unit(unit, client, report).unwrap_or_else(|error| {
+                // What became of the units before counts as well.
+                self.outcome.add(report.error(&error));
+                true
+            });
             let rest = units.len() - index - 1;
-            if is_lost || self.is_stopped() {
+            if is_over || self.is_stopped() {
                 report::untried_units(rest);
                 break;
             }
         }
-        Ok(())
     }
 
     fn is_stopped(&self) -> bool {
@@ -103,7 +100,7 @@ impl Task<'_> {
         stop.is_some_and(|stop| stop.requested().is_some())
     }
 
-    /// Writes to one unit, and returns whether the port is lost.
+    /// Writes to one unit, and returns whether the port is lost, or the line of no use.
     fn unit(
         &mut self,
         unit: Unit,
@@ -135,8 +132,12 @@ impl Task<'_> {
             }
             (ready, None) => ready?,
         };
+        if self.is_stopped() {
+            report::problem(&place, "nothing was written: the program was stopped");
+            return Ok(false);
+        }
         self.show(&place, &before, &changes, &planned, report)?;
-        self.consent.obtain(&place)?;
+        self.consent.obtain(&place, self.stop.as_ref())?;
 
         let stop = self.stop.get_or_insert_with(Stop::listen_while_writing);
         client.stop_when(stop.flag());
