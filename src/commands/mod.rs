@@ -9,6 +9,7 @@ mod error;
 mod execute_operation;
 mod exit_code;
 mod fates;
+mod hints;
 mod local_time;
 mod logging;
 mod loopback;
