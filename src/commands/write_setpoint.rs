@@ -8,7 +8,7 @@ use super::report::{self, Report};
 use super::setpoints::{Job, insisted, typed};
 use super::tour::Tour;
 use super::{CommandError, ExitCode, print};
-use crate::cli::WriteSetpoint;
+use crate::cli::{NumberingChoice, WriteSetpoint};
 use crate::client::Client;
 use crate::codec::{Request, Unit, rtu};
 use crate::output::changes::{Line, table};
@@ -42,6 +42,7 @@ pub(super) fn run(
     let mut client = line.open()?;
     let task = Task {
         arguments,
+        line: &line,
         job: &job,
         asking: &asking,
     };
@@ -70,6 +71,7 @@ fn frames(units: &[Unit], planned: &[PlannedWrite]) -> String {
 /// Writing under way.
 struct Task<'a> {
     arguments: &'a WriteSetpoint,
+    line: &'a LinePlan<'a>,
     job: &'a Job<'a>,
     asking: &'a Asking<'a>,
 }
@@ -182,18 +184,24 @@ impl Task<'_> {
 
     /// The command that shows what was written; `None` where nothing of it can be read.
     fn find_out(&self, unit: Unit) -> Option<String> {
-        let points = self.asking.points.iter();
-        let names: Vec<&str> = points.map(|point| point.name.as_str()).collect();
+        let typed = self.job.points().zip(&self.arguments.what);
+        let readable = typed.filter(|(point, _)| point.access.readable());
+        // As they were typed: registers by address with their type.
+        let names = readable.filter_map(|(_, what)| Some(what.split_once('=')?.0));
+        let names: Vec<&str> = names.collect();
         if names.is_empty() {
             return None;
         }
-        let port = self.arguments.line.port.as_deref().unwrap_or_default();
+        let line = self.line.typed();
         let meter = self.arguments.meter.as_ref();
-        let meter = meter
-            .map(|meter| format!(" --meter {meter}"))
-            .unwrap_or_default();
+        let meter = meter.map(|meter| format!(" --meter {meter}"));
+        let numbering = match self.arguments.numbering {
+            NumberingChoice::Modicon => " --numbering modicon",
+            NumberingChoice::Protocol => "",
+        };
         Some(format!(
-            "meterpoll read-registers -p {port} -a {unit}{meter} {}",
+            "meterpoll read-registers {line} -a {unit}{}{numbering} {}",
+            meter.unwrap_or_default(),
             names.join(" ")
         ))
     }
@@ -205,11 +213,13 @@ fn figure(change: &Change, scales: &Scales) -> String {
     value.map_or_else(|_| "?".to_owned(), |value| value.to_string())
 }
 
-/// The same with its unit.
+/// The same with its unit, where it is a number.
 fn shown(change: &Change, scales: &Scales) -> String {
+    let value = change.point.interpret(&change.registers, scales);
+    let is_number = value.is_ok_and(|value| value.is_number());
     let figure = figure(change, scales);
     match &change.point.unit {
-        Some(unit) => format!("{figure} {unit}"),
-        None => figure,
+        Some(unit) if is_number => format!("{figure} {unit}"),
+        _ => figure,
     }
 }
