@@ -101,6 +101,7 @@ pub(super) fn tell(deed: &Deed<'_>, fate: &Fate, report: &mut Report) -> ExitCod
             );
             report::problem(&format!("{place}, {name}"), &text);
             deed.unwritten(why, report);
+            deed.advise(report);
             ExitCode::WriteUnknown
         }
     }

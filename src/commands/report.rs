@@ -215,7 +215,7 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::MovesFirst { .. }
         | CommandError::NeedsMeter { .. }
         | CommandError::NeedsYes { .. }
-        | CommandError::Declined
+        | CommandError::Declined { .. }
         | CommandError::NoOperations { .. }
         | CommandError::NoOperation { .. }
         | CommandError::TakesNothing { .. }
