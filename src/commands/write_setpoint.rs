@@ -2,11 +2,11 @@
 
 use super::asking::{Asking, units};
 use super::careful::Consent;
-use super::fates::{self, Deed, Outcome};
+use super::fates::{self, Deed};
 use super::open_line::LinePlan;
 use super::report::{self, Report};
 use super::setpoints::{Job, insisted, typed};
-use super::signals::Stop;
+use super::tour::Tour;
 use super::{CommandError, ExitCode, print};
 use crate::cli::{NumberingChoice, WriteSetpoint};
 use crate::client::Client;
@@ -40,21 +40,20 @@ pub(super) fn run(
     let mut asking = Asking::new(&line, profile, &readable, limits.read_function());
     asking.setup = job.setup();
     let mut client = line.open()?;
-    let mut task = Task {
+    let task = Task {
         arguments,
         line: &line,
         job: &job,
         asking: &asking,
-        consent: &consent,
-        stop: None,
-        outcome: Outcome::default(),
     };
-    task.all(&units, &mut client, report);
+    let tour = Tour::new(&units, &consent);
+    let code = tour.all(&mut client, report, |unit, tour, client, report| {
+        task.unit(unit, tour, client, report)
+    });
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
     // lost has none.
     let _ = client.finish();
-    let stopped = task.stop.as_ref().and_then(Stop::requested);
-    Ok(task.outcome.code(stopped))
+    Ok(code)
 }
 
 /// The requests as they would go out, one a line.
@@ -75,40 +74,17 @@ struct Task<'a> {
     line: &'a LinePlan<'a>,
     job: &'a Job<'a>,
     asking: &'a Asking<'a>,
-    consent: &'a Consent,
-    /// Listens from the first write on.
-    stop: Option<Stop>,
-    outcome: Outcome,
 }
 
 impl Task<'_> {
-    fn all(&mut self, units: &[Unit], client: &mut Client, report: &mut Report) {
-        for (index, unit) in units.iter().copied().enumerate() {
-            let is_over = self.unit(unit, client, report).unwrap_or_else(|error| {
-                // What became of the units before counts as well.
-                self.outcome.add(report.error(&error));
-                true
-            });
-            let rest = units.len() - index - 1;
-            if is_over || self.is_stopped() {
-                report::untried_units(rest);
-                break;
-            }
-        }
-    }
-
-    fn is_stopped(&self) -> bool {
-        let stop = self.stop.as_ref();
-        stop.is_some_and(|stop| stop.requested().is_some())
-    }
-
-    /// Writes to one unit, and returns whether the port is lost, or the line of no use.
+    /// Writes to one unit.
     fn unit(
-        &mut self,
+        &self,
         unit: Unit,
+        tour: &mut Tour<'_>,
         client: &mut Client,
         report: &mut Report,
-    ) -> Result<bool, CommandError> {
+    ) -> Result<(), CommandError> {
         let place = format!("unit {unit} on {}", self.asking.line);
         let mut memory = self.asking.memory();
         let inquiry = self.asking.inquiry(unit);
@@ -116,8 +92,8 @@ impl Task<'_> {
             Ok(before) => before,
             Err(failure) => {
                 report.failure(&format!("{place}: nothing was written"), &failure);
-                self.outcome.add(ExitCode::of(0, &[Fault::from(&failure)]));
-                return Ok(true);
+                tour.add(ExitCode::of(0, &[Fault::from(&failure)]));
+                return Ok(());
             }
         };
         let ready = self.job.ready(&before.scales).and_then(|ready| {
@@ -129,21 +105,18 @@ impl Task<'_> {
             // What would have told was not read.
             (_, Some(failure)) => {
                 report.failure(&format!("{place}: nothing was written"), failure);
-                self.outcome.add(ExitCode::of(0, &[Fault::from(failure)]));
-                return Ok(before.is_hopeless());
+                tour.add(ExitCode::of(0, &[Fault::from(failure)]));
+                return Ok(());
             }
             (ready, None) => ready?,
         };
-        if self.is_stopped() {
+        if tour.is_stopped() {
             report::problem(&place, "nothing was written: the program was stopped");
-            return Ok(false);
+            return Ok(());
         }
         self.show(&place, &before, &changes, &planned, report)?;
-        self.consent.obtain(&place, self.stop.as_ref())?;
-
-        let stop = self.stop.get_or_insert_with(Stop::listen_while_writing);
-        client.stop_when(stop.flag());
-        let is_over = || stop.requested().is_some();
+        tour.begin(&place, client)?;
+        let is_over = || tour.is_stopped();
         let patience = self.asking.patience;
         let replies = carry_out(client, unit, &planned, changes.len(), patience, &is_over);
         let verified = !self.arguments.no_verify && !is_over();
@@ -159,9 +132,9 @@ impl Task<'_> {
                 done: "written",
                 find_out: find_out.as_deref(),
             };
-            self.outcome.add(fates::tell(&deed, fate, report));
+            tour.add(fates::tell(&deed, fate, report));
         }
-        Ok(client.is_lost())
+        Ok(())
     }
 
     /// Shows what will be written.
