@@ -52,6 +52,7 @@ pub(super) fn run(
     if !report.is_quiet() {
         print(format!("# {place}\n{}", message.shown_first()).as_bytes())?;
     }
+    message.warn_of_pieces();
     let mut code = ExitCode::Done;
     let result = consent.obtain(&place, None).and_then(|()| {
         let stop = Stop::listen_while_writing();

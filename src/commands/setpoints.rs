@@ -3,10 +3,11 @@
 
 use super::CommandError;
 use super::careful::Hazard;
+use super::report;
 use crate::cli::{NumberingChoice, WriteFunctionChoice};
 use crate::profile::assignment::{Assignment, alike, apart, assignments};
 use crate::profile::selector::{Numbering, Purpose, Reading};
-use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, plan};
+use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, in_pieces, plan};
 use crate::profile::writing::{Broadcasting, Distinct, WriteFunction};
 use crate::profile::{Point, Profile, Scales, Setup};
 use crate::writing::before::{allowed, distinct};
@@ -195,4 +196,18 @@ pub(super) fn insisted(function: Option<WriteFunctionChoice>) -> Option<WriteFun
         WriteFunctionChoice::SingleRegister => WriteFunction::SingleRegister,
         WriteFunctionChoice::MultipleRegisters => WriteFunction::MultipleRegisters,
     })
+}
+
+/// Tells of points that are not written at once.
+pub(super) fn warn_of_pieces(changes: &[Change], planned: &[PlannedWrite]) {
+    for index in in_pieces(planned, changes.len()) {
+        if let Some(change) = changes.get(index) {
+            report::warning(&format!(
+                "{} goes in {} requests, low word first, for the meter writes one register at a time: \
+                 in between it holds half of it",
+                change.point.name,
+                change.registers.len()
+            ));
+        }
+    }
 }

@@ -5,14 +5,14 @@ use super::careful::Consent;
 use super::fates::{self, Deed};
 use super::open_line::LinePlan;
 use super::report::{self, Report};
-use super::setpoints::{Job, insisted, typed};
+use super::setpoints::{Job, insisted, typed, warn_of_pieces};
 use super::tour::Tour;
 use super::{CommandError, ExitCode, print};
 use crate::cli::{NumberingChoice, WriteSetpoint};
 use crate::client::Client;
 use crate::codec::{Request, Unit, rtu};
 use crate::output::changes::{Line, table};
-use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, in_pieces};
+use crate::profile::write_plan::{Change, PlannedWrite, WriteRules};
 use crate::profile::{Limits, Scales, find};
 use crate::readings::Fault;
 use crate::writing::{Before, before, carry_out, check};
@@ -169,16 +169,7 @@ impl Task<'_> {
                 "{place}: what it holds now could not be read ({failure}); it is written all the same"
             ));
         }
-        for index in in_pieces(planned, changes.len()) {
-            if let Some(change) = changes.get(index) {
-                report::warning(&format!(
-                    "{} goes in {} requests, low word first, for the meter writes one register at a \
-                     time: in between it holds half of it",
-                    change.point.name,
-                    change.registers.len()
-                ));
-            }
-        }
+        warn_of_pieces(changes, planned);
         Ok(())
     }
 

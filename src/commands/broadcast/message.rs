@@ -10,7 +10,7 @@ use crate::codec::Write;
 use crate::commands::CommandError;
 use crate::commands::careful::Hazard;
 use crate::commands::execute_operation::telling::Telling;
-use crate::commands::setpoints::{Job, insisted, typed};
+use crate::commands::setpoints::{Job, insisted, typed, warn_of_pieces};
 use crate::profile::assignment::Assignment;
 use crate::profile::write_plan::{Change, WriteRules};
 use crate::profile::writing::Broadcasting;
@@ -132,6 +132,14 @@ impl<'a> Message<'a> {
                 format!("{}: {}\n", telling.operation.name, telling.operation.about)
             }
             What::Values(parts) => parts.iter().map(Part::shown).collect(),
+        }
+    }
+
+    /// Tells of points that are not sent at once.
+    pub(super) fn warn_of_pieces(&self) {
+        let job = self.job(Timestamp::UNIX_EPOCH, Duration::ZERO);
+        if let Ok((changes, planned)) = job.and_then(|job| job.ready_unread()) {
+            warn_of_pieces(&changes, &planned);
         }
     }
 
