@@ -189,3 +189,17 @@ fn a_port_that_is_lost_meanwhile_leaves_the_outcome_unknown() {
     assert!(told.stderr.ends_with(end), "{told:?}");
     assert_eq!(writes(&meter), ["00 06 11 03 00 05"]);
 }
+
+#[test]
+fn a_point_of_two_registers_is_warned_of_where_it_goes_in_two_requests() {
+    let meter = PtyMeter::new(Box::new(|_| Vec::new()));
+    let told = run(meter.path(), "broadcast -q --meter em24 ct_ratio=40.0");
+    came_to(
+        &told,
+        0,
+        "",
+        "warning: ct_ratio goes in 2 requests, low word first, for the meter writes one register at a \
+         time: in between it holds half of it\n",
+    );
+    assert_eq!(writes(&meter), ["00 06 11 2C 01 90", "00 06 11 2D 00 00"]);
+}

@@ -398,7 +398,7 @@ fn a_broadcast_waits_for_its_turnaround_and_for_nobody() {
         let write = set(0x1028, 500);
         let result = bench
             .client
-            .broadcast(&write, turnaround, Patience::default());
+            .broadcast(&|_| write.clone(), turnaround, Patience::default());
         assert!(result.is_ok());
         let sent = bench.line.sent();
         assert_eq!(sent[1].frame[..6], [0, 6, 0x10, 0x28, 0x01, 0xF4]);
@@ -430,7 +430,9 @@ fn a_broadcast_is_sent_once_whatever_comes_back() {
     ] {
         let mut bench = Bench::new();
         bench.line.answer(vec![(ms(1), came)]);
-        let result = bench.client.broadcast(&write, ms(200), Patience::default());
+        let result = bench
+            .client
+            .broadcast(&|_| write.clone(), ms(200), Patience::default());
         assert!(result.is_ok());
         assert_eq!(bench.frames(), 1);
     }
@@ -444,7 +446,7 @@ fn a_broadcast_waits_for_answers_that_are_owed() {
         ..Patience::default()
     };
     assert!(bench.client.request(unit(17), &read(1, 1), once).is_err());
-    let result = bench.client.broadcast(&set(0x1028, 500), ms(200), once);
+    let result = bench.client.broadcast(&|_| set(0x1028, 500), ms(200), once);
     assert!(result.is_ok());
     let sent = bench.line.sent();
     assert!(sent[2].at >= sent[1].at + ms(2000), "{sent:?}");
@@ -462,7 +464,7 @@ fn a_broadcast_during_which_the_port_is_lost_may_have_been_heard() {
         bench.line.come_back(bench.now() + ms(150));
         let result = bench
             .client
-            .broadcast(&set(0x1028, 500), ms(200), Patience::default());
+            .broadcast(&|_| set(0x1028, 500), ms(200), Patience::default());
         assert!(
             matches!(result, Err(Unwritten::Unknown(Failure::Port(_)))),
             "{result:?}"
@@ -479,7 +481,7 @@ fn nothing_is_broadcast_into_a_line_that_is_never_silent() {
         .inject_endlessly(bench.now(), ms(2), || vec![0x55]);
     let result = bench
         .client
-        .broadcast(&set(0x1028, 500), ms(200), Patience::default());
+        .broadcast(&|_| set(0x1028, 500), ms(200), Patience::default());
     assert!(
         matches!(result, Err(Unwritten::NotSent(Failure::NeverQuiet { .. }))),
         "{result:?}"

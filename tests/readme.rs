@@ -212,6 +212,7 @@ fn every_option_it_names_is_in_the_help() {
         "write-setpoint",
         "broadcast",
         "execute-operation",
+        "read-status",
         "loopback",
         "simulate",
     ];

@@ -77,10 +77,10 @@ pub enum CommandError {
         hazard: String,
     },
     /// Somebody was asked and did not say yes.
-    #[error("{place}: not confirmed, so nothing was sent there")]
+    #[error("not confirmed; nothing was sent to {whom}")]
     Declined {
-        /// Who it was to be done to.
-        place: String,
+        /// Who it was to be done to: a unit, or all meters on a line.
+        whom: String,
     },
     /// A meter of whose operations nothing is known.
     #[error("the profile of {meter} has no operations")]
