@@ -196,7 +196,7 @@ fn a_broadcast_waits_for_the_turnaround_and_for_no_answer_and_is_sent_once() {
     let start = case.now();
     let result = case
         .client
-        .broadcast(&set(0x1028, 500), ms(200), patience());
+        .broadcast(&|_| set(0x1028, 500), ms(200), patience());
     assert!(result.is_ok(), "{result:?}");
     let took = case.now().saturating_sub(start);
     let least = SILENCE + WRITE + ms(200);

@@ -81,7 +81,7 @@ fn ask(hazards: &[Hazard], whom: &str) -> Result<(), CommandError> {
         let _ = writeln!(terminal);
     }
     Err(CommandError::Declined {
-        whom: whom.to_owned(),
+        place: whom.to_owned(),
     })
 }
 

@@ -211,7 +211,7 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::Select(_)
         | CommandError::Assign(_)
         | CommandError::WritePlan(_)
-        | CommandError::NotNow(_)
+        | CommandError::NotNow { .. }
         | CommandError::MovesFirst { .. }
         | CommandError::NeedsMeter { .. }
         | CommandError::NeedsYes { .. }
@@ -230,6 +230,8 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::BroadcastOnly { .. }
         | CommandError::NoClock { .. }
         | CommandError::NoMoment { .. }
+        | CommandError::NoTimeZone { .. }
+        | CommandError::OneAddress { .. }
         | CommandError::ColumnClash { .. }
         | CommandError::Function { .. }
         | CommandError::NoEffect { .. }
