@@ -164,7 +164,7 @@ fn a_meter_that_has_not_taken_it_is_named() {
         "# all meters on PORT at 115200 8N1\n\
          demand_interval: 5 min\n\
          sent to all meters on PORT at 115200 8N1\n",
-        "error: unit 1 on PORT at 115200 8N1, demand_interval: was sent, and the meter holds 15\n\
+        "error: unit 1 on PORT at 115200 8N1, demand_interval: was sent, and the meter holds 15 min\n\
          error: unit 2 on PORT at 115200 8N1, demand_interval (registers 0x1103+1): no answer within \
          200ms, 3 attempts\n\
          hint: check --unit, --baud, --parity and --stop-bits against the meter, then power and \
@@ -198,8 +198,8 @@ fn a_point_of_two_registers_is_warned_of_where_it_goes_in_two_requests() {
         &told,
         0,
         "",
-        "warning: ct_ratio goes in 2 requests, low word first, for the meter writes one register at a \
-         time: in between it holds half of it\n",
+        "warning: ct_ratio goes in 2 requests, low word first, for function 6 writes one register at a \
+         time: in between the meter holds half of it\n",
     );
     assert_eq!(writes(&meter), ["00 06 11 2C 01 90", "00 06 11 2D 00 00"]);
 }

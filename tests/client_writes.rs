@@ -147,7 +147,7 @@ fn a_gateway_whose_unit_is_silent_does_not_know_either() {
 }
 
 #[test]
-fn a_busy_unit_is_written_to_again_after_100_200_and_400_ms() {
+fn a_busy_unit_is_written_to_again_and_heard_out_from_the_second_time_on() {
     let mut bench = known();
     let write = set(0x1028, 500);
     for _ in 0..3 {
@@ -158,7 +158,8 @@ fn a_busy_unit_is_written_to_again_after_100_200_and_400_ms() {
     assert_eq!(outcome(&result), "done");
     let sent = bench.line.sent();
     let silences = sent[2..].iter().map(|sent| sent.silence.as_millis());
-    assert_eq!(silences.collect::<Vec<_>>(), [100, 200, 400]);
+    // A second copy of the first word of it may hide that the write is carried out.
+    assert_eq!(silences.collect::<Vec<_>>(), [100, 1000, 1000]);
     assert!(sent[1..].iter().all(|again| again.frame == sent[1].frame));
     let counters = bench.client.counters(unit(17));
     assert_eq!((counters.busy, counters.retries), (3, 3));

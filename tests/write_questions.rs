@@ -84,7 +84,7 @@ fn anything_else_does_nothing() {
         let meter = any_meter();
         let end = answered(&meter, COMMAND, typed);
         let text = format!(
-            "{HAZARD}error: not confirmed; nothing was sent to unit 17 on PORT at 115200 8N1\n"
+            "{HAZARD}error: unit 17 on PORT at 115200 8N1: not confirmed, so nothing was sent there\n"
         );
         assert_eq!(end.terminal, text);
         assert_eq!(end.code, Some(2));
@@ -114,8 +114,9 @@ fn every_unit_is_asked_about() {
     terminal.types("no\n");
     let end = told(&meter, terminal);
     assert!(
-        end.terminal
-            .ends_with("error: not confirmed; nothing was sent to unit 18 on PORT at 115200 8N1\n"),
+        end.terminal.ends_with(
+            "error: unit 18 on PORT at 115200 8N1: not confirmed, so nothing was sent there\n"
+        ),
         "{end:?}"
     );
     assert!(end.stdout.contains("reset_all_meters: done\n"), "{end:?}");

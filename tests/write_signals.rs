@@ -139,8 +139,8 @@ fn a_point_that_is_half_written_is_told_as_such() {
     }
     assert_eq!(
         end.stderr,
-        "warning: ct_ratio goes in 2 requests, low word first, for the meter writes one register at a \
-         time: in between it holds half of it\n\
+        "warning: ct_ratio goes in 2 requests, low word first, for function 6 writes one register at a \
+         time: in between the meter holds half of it\n\
          error: unit 17 on PORT at 115200 8N1, ct_ratio: the first of its registers are written, the \
          others are not known to be\n\
          error: unit 17 on PORT at 115200 8N1, ct_ratio: not sent: the program was stopped\n\
@@ -178,7 +178,7 @@ fn a_broadcast_that_is_stopped_keeps_its_turnaround_and_sends_no_more() {
     );
     assert_eq!(
         end.stderr,
-        "error: all meters on PORT at 115200 8N1: request 2 of 2 not sent: the program was stopped\n"
+        "error: all meters on PORT at 115200 8N1: request 2 of 2 not sent, those before it were: the program was stopped\n"
     );
     assert_eq!(writes(&meter).len(), 1);
 }

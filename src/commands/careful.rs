@@ -73,7 +73,7 @@ fn ask(hazards: &[Hazard], whom: &str) -> Result<(), CommandError> {
     let read = asked.and_then(|()| io::stdin().lock().read_line(&mut answer));
     // What somebody was about to type as the terminal closed is no answer.
     let is_typed = read.is_ok() && answer.ends_with('\n');
-    if is_typed && matches!(&*answer.trim().to_lowercase(), "yes" | "y") {
+    if is_typed && matches!(answer.trim(), "yes" | "y" | "Yes" | "YES") {
         return Ok(());
     }
     if !is_typed {
@@ -81,7 +81,7 @@ fn ask(hazards: &[Hazard], whom: &str) -> Result<(), CommandError> {
         let _ = writeln!(terminal);
     }
     Err(CommandError::Declined {
-        whom: whom.to_owned(),
+        place: whom.to_owned(),
     })
 }
 

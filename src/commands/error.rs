@@ -77,10 +77,10 @@ pub enum CommandError {
         hazard: String,
     },
     /// Somebody was asked and did not say yes.
-    #[error("not confirmed; nothing was sent to {whom}")]
+    #[error("{place}: not confirmed, so nothing was sent there")]
     Declined {
-        /// Who it was to be done to: a unit, or all meters on a line.
-        whom: String,
+        /// Who it was to be done to.
+        place: String,
     },
     /// A meter of whose operations nothing is known.
     #[error("the profile of {meter} has no operations")]
