@@ -27,7 +27,7 @@ fn a_value_that_the_point_cannot_have() {
     for (what, problem) in [
         (
             "ct_primary=99999",
-            "ct_primary: 99999 is not within 0 to 65535",
+            "ct_primary: 99999 is not within 0 to 12000",
         ),
         ("ct_primary=-1", "ct_primary: -1 is not within 0 to 65535"),
         (
