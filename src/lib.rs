@@ -5,6 +5,7 @@
 //! ```text
 //! main → commands → cli        what can be typed
 //!                 → output     readings, and what a meter is, to table, CSV, JSON
+//!                 → polling    when which meter is read, over and over
 //!                 → writing    points written, once, and what became of it
 //!                 → readings   a read plan carried out: a value or a fault for each point
 //!                 → sim        a simulated meter and its line
@@ -34,6 +35,7 @@ pub mod client;
 pub mod codec;
 pub mod commands;
 pub mod output;
+pub mod polling;
 pub mod profile;
 pub mod readings;
 pub mod sim;
