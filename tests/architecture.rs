@@ -71,7 +71,8 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
             "client/",
             "output/loopback/",
             "output/profile/",
-            "polling/",
+            "polling/schedule.rs",
+            "polling/site/",
             "profile/",
             "transport/error.rs",
             "transport/faulty/",
@@ -94,6 +95,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
     (
         "toml",
         &[
+            "polling/site/",
             "profile/advice/",
             "profile/format.rs",
             "profile/format/",
