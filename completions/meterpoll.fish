@@ -29,6 +29,10 @@ complete -c meterpoll -n "__fish_meterpoll_needs_command" -s v -l verbose -d 'Sa
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -s V -l version -d 'Print version'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "write-setpoint" -d 'Write points of a meter by name, or raw registers by address, and read them back'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "broadcast" -d 'Write to every meter on the line at once, without an answer'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "execute-operation" -d 'Have a meter do something: reset, clear energy, set its clock'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "read-status" -d 'Read the eight status bits of a meter, by name (function 07)'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "loopback" -d 'Send words to a unit and compare what comes back: is the line good?'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "ports" -d 'List serial ports, without opening any'
@@ -41,12 +45,16 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l f
 4\t'Read Input Registers'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l numbering -d 'How register numbers are written' -r -f -a "protocol\t'Addresses as on the wire, from 0'
 modicon\t'30001 or 300001 for input registers, 40001 or 400001 for holding registers'"
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s f -l format -d 'How readings are printed' -r -f -a "table\t'For people'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s f -l format -d 'How readings are printed [default: table; with --output csv]' -r -f -a "table\t'For people'
 csv\t'Comma-separated values with a header'
 json\t'One array of objects, one a reading'
-jsonl\t'One object a line, one a reading'"
+jsonl\t'One object a line, one a reading'
+influx\t'Influx line protocol, a line a row'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l layout -d 'Shape of CSV [default: wide]' -r -f -a "wide\t'A row a meter, a column a point'
 long\t'A row a reading'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s o -l output -d 'Append the rows to this file and print none: as csv, or jsonl or influx with --format' -r -F
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l on-schema-change -d 'What to do about a file with other columns, or that holds something else' -r -f -a "refuse\t'Write nothing, and end with code 7'
+new-file\t'Go on in name.2.csv, name.3.csv and on, the first that fits'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
@@ -63,12 +71,122 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l e
 on\t'The line echoes'
 off\t'The line does not echo'"
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l units -d 'Put units into the header of wide CSV'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l no-sync -d 'Leave it to the system when rows reach the disk: less wear of flash memory, and a power cut can take the last ones'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l dry-run -d 'Print the requests in hex and send nothing'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -l plan -d 'Print the requests with the registers, points and time of each, and send nothing'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-registers" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s a -l unit -d 'The units to write to, one after the other: 17, or 1,2,5-9; --unit-id and --slave mean the same' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l meter -d 'The meter: a name that `meters list` shows, or a profile file; it tells what may be written' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l function -d 'The function to write with [default: 6 for one register, 16 for several, as the meter takes them]' -r -f -a "6\t'Write Single Register'
+16\t'Write Multiple Registers'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l numbering -d 'How register numbers are written' -r -f -a "protocol\t'Addresses as on the wire, from 0'
+modicon\t'30001 or 300001 for input registers, 40001 or 400001 for holding registers'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
+even\t'Even parity, the standard\'s default'
+odd\t'Odd parity'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
+2\t'Two stop bits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms; a late one is waited for as long again and thrown away [default: the meter\'s longest answer time, else 1s]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
+on\t'The line echoes'
+off\t'The line does not echo'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s y -l yes -d 'Do what is hazardous without asking; needed where nobody can be asked'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l dry-run -d 'Print the requests in hex and send nothing'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -l no-verify -d 'Leave out reading back what was written'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand write-setpoint" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l meter -d 'The meter: a name that `meters list` shows, or a profile file; it tells what may be broadcast' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l function -d 'The function to write with [default: 6 for one register, 16 for several, as the meter obeys them]' -r -f -a "6\t'Write Single Register'
+16\t'Write Multiple Registers'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l numbering -d 'How register numbers are written' -r -f -a "protocol\t'Addresses as on the wire, from 0'
+modicon\t'30001 or 300001 for input registers, 40001 or 400001 for holding registers'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l turnaround -d 'How long the meters get to do it before anything else is sent, or the port is left' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l verify-units -d 'Read these units afterwards and tell which of them hold the values: 17, or 1,2,5-9' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
+even\t'Even parity, the standard\'s default'
+odd\t'Odd parity'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
+2\t'Two stop bits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms; a late one is waited for as long again and thrown away [default: the meter\'s longest answer time, else 1s]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
+on\t'The line echoes'
+off\t'The line does not echo'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l force -d 'Send also what the meter\'s manual does not say can be broadcast'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l one-by-one -d 'Send each point in a request of its own: the clock\'s time and date apart'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s y -l yes -d 'Do what is hazardous without asking; needed where nobody can be asked'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -l dry-run -d 'Print the requests in hex and send nothing'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand broadcast" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s a -l unit -d 'The units to tell, one after the other: 17, or 1,2,5-9; --unit-id and --slave mean the same' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -l meter -d 'The meter: a name that `meters list` shows, or a profile file' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -l function -d 'The function to tell it with, for operations that have a number [default: 5, or 16 where something goes with it]' -r -f -a "5\t'Write Single Coil: the number alone'
+16\t'Write Multiple Registers: the meter\'s command registers'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
+even\t'Even parity, the standard\'s default'
+odd\t'Odd parity'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
+2\t'Two stop bits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms; a late one is waited for as long again and thrown away [default: the meter\'s longest answer time, else 1s]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
+on\t'The line echoes'
+off\t'The line does not echo'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -l list -d 'List the meter\'s operations and what is hazardous about them'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s y -l yes -d 'Do what is hazardous without asking; needed where nobody can be asked'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -l dry-run -d 'Print the requests in hex and send nothing'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand execute-operation" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s a -l unit -d 'The units to read: 17, or 1,2,5-9; --unit-id and --slave mean the same' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -l meter -d 'The meter: a name that `meters list` shows, or a profile file; it tells what the bits mean' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s f -l format -d 'How the status is printed' -r -f -a "table\t'For people: a line a unit'
+csv\t'Comma-separated values with a header, a row a unit'
+json\t'One array of objects, one a unit'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
+even\t'Even parity, the standard\'s default'
+odd\t'Odd parity'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
+2\t'Two stop bits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms; a late one is waited for as long again and thrown away [default: the meter\'s longest answer time, else 1s]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
+on\t'The line echoes'
+off\t'The line does not echo'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -l dry-run -d 'Print the requests in hex and send nothing'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand read-status" -s V -l version -d 'Print version'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s a -l unit -d 'The units to test, one after the other: 17, or 1,2,5-9; --unit-id and --slave mean the same' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l meter -d 'The meter: a name that `meters list` shows, or a profile file; it tells what the meter sends back [default: anything]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -l count -d 'How many words each unit gets, one try each; at most 1000000' -r
@@ -179,13 +297,17 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s q -l
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s V -l version -d 'Print version'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "loopback" -d 'Send words to a unit and compare what comes back: is the line good?'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "ports" -d 'List serial ports, without opening any'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "completions" -d 'Print a shell\'s completion script'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers loopback meters ports simulate completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "write-setpoint" -d 'Write points of a meter by name, or raw registers by address, and read them back'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "broadcast" -d 'Write to every meter on the line at once, without an answer'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "execute-operation" -d 'Have a meter do something: reset, clear energy, set its clock'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "read-status" -d 'Read the eight status bits of a meter, by name (function 07)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "loopback" -d 'Send words to a unit and compare what comes back: is the line good?'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "ports" -d 'List serial ports, without opening any'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "completions" -d 'Print a shell\'s completion script'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "list" -d 'List the meters inside the program and your own'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "show" -d 'Show a meter: its line, limits and groups, and its points'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "export" -d 'Print the profile of a meter as the TOML file that it is'

@@ -7,6 +7,7 @@
 //!                 → output     readings, and what a meter is, to table, CSV, JSON
 //!                 → polling    when which meter is read, over and over
 //!                 → writing    points written, once, and what became of it
+//!                   → append   rows to files that others append to as well
 //!                 → readings   a read plan carried out: a value or a fault for each point
 //!                 → sim        a simulated meter and its line
 //!                 → client     one request and its one answer; what is believed
@@ -30,6 +31,7 @@
     clippy::unimplemented
 )]
 
+pub mod append;
 pub mod cli;
 pub mod client;
 pub mod codec;

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use support::paths::{modules, paths};
 
 /// What each module, and each file directly in `src/`, may import from besides itself.
-const LAYERS: [(&str, &[&str]); 15] = [
+const LAYERS: [(&str, &[&str]); 16] = [
     ("codec", &[]),
     ("transport", &["codec"]),
     ("profile", &["codec", "transport"]),
@@ -23,15 +23,17 @@ const LAYERS: [(&str, &[&str]); 15] = [
         "polling",
         &["client", "codec", "profile", "readings", "transport"],
     ),
+    ("append", &["transport"]),
     ("writing", &["client", "codec", "profile", "readings"]),
     (
         "output",
-        &["codec", "profile", "readings", "words", "writing"],
+        &["append", "codec", "profile", "readings", "words"],
     ),
     ("cli", &[]),
     (
         "commands",
         &[
+            "append",
             "cli",
             "client",
             "codec",
@@ -84,7 +86,12 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
     ("rust_decimal", EVERYWHERE),
     (
         "rustix",
-        &["transport/lock.rs", "transport/pty.rs", "transport/pty/"],
+        &[
+            "append/system.rs",
+            "transport/lock.rs",
+            "transport/pty.rs",
+            "transport/pty/",
+        ],
     ),
     ("serde", EVERYWHERE),
     ("serde_json", &["output/json.rs"]),

@@ -118,7 +118,7 @@ fn a_profile_that_does_not_parse_is_named_with_line_and_key() {
         .stderr(format!(
             "error: {path}:7: a.adress: unknown key, expected \
              name, address, repeat, type, order, scale, span, unit, about, access, range, labels, \
-             no_value, only_with, alone, function, hazard, momentary, step, allowed, also, \
+             no_value, only_with, alone, function, hazard, momentary, moves, step, allowed, also, \
              write_function, broadcast, writable_with, shown_by, verified, page\n"
         ))
         .run();

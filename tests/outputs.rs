@@ -1,10 +1,13 @@
 //! Every output format, to the letter, from rows made by hand.
 
 use jiff::Timestamp;
+use meterpoll::append::Start;
 use meterpoll::codec::value::{ByteOrder, RegisterType};
 use meterpoll::codec::{ExceptionCode, RegisterRange, Unit, UnitRange};
-use meterpoll::output::csv::CsvStyle;
-use meterpoll::output::{Heading, Json, JsonLines, LongCsv, Sink, Table, WideCsv};
+use meterpoll::output::csv::Names;
+use meterpoll::output::{
+    Heading, Influx, Json, JsonLines, LineFormat, LongCsv, Sink, Stream, Table, WideCsv,
+};
 use meterpoll::profile::{Point, Value};
 use meterpoll::readings::{Fault, Row};
 
@@ -69,7 +72,7 @@ fn wide_csv_quotes_what_needs_it_and_leaves_missing_cells_empty() {
     ];
     let mut out = Vec::new();
     printed(
-        |out| WideCsv::new(out, CsvStyle::default()),
+        |out| Stream::new(out, WideCsv::default()),
         &mut out,
         &points,
         &rows,
@@ -109,12 +112,7 @@ fn long_csv_gives_every_reading_its_own_status() {
     let points = [point("a", Some("A")), point("b", None)];
     let rows = [row(1, vec![Ok(decimal("-0.50")), Err(Fault::Crc)])];
     let mut out = Vec::new();
-    printed(
-        |out| LongCsv::new(out, CsvStyle::default()),
-        &mut out,
-        &points,
-        &rows,
-    );
+    printed(|out| Stream::new(out, LongCsv), &mut out, &points, &rows);
     assert_eq!(
         String::from_utf8(out).expect("text"),
         "time,meter,unit_id,point,value,unit,status\n\
@@ -138,7 +136,12 @@ fn json_numbers_keep_every_digit_and_text_is_escaped() {
         Ok(text("\u{1b}[31m\"red\"")),
     ];
     let mut out = Vec::new();
-    printed(JsonLines::new, &mut out, &points, &[row(1, values)]);
+    printed(
+        |out| Stream::new(out, JsonLines),
+        &mut out,
+        &points,
+        &[row(1, values)],
+    );
     let out = String::from_utf8(out).expect("text");
     let value = |line: &str| {
         let start = line.find("\"value\":").expect("a value") + "\"value\":".len();
@@ -153,6 +156,73 @@ fn json_numbers_keep_every_digit_and_text_is_escaped() {
 }
 
 #[test]
+fn line_protocol_has_a_field_for_each_value_and_the_status_says_what_is_missing() {
+    let names = ["a", "b", "c", "d", "0x6B c,d=e"];
+    let points = names.map(|name| point(name, Some("kWh")));
+    let values = vec![
+        Ok(decimal("18446744073709551615")),
+        Err(Fault::Timeout),
+        Ok(Value::Double(1e300)),
+        Ok(text("say \"hi\",\\ you\n")),
+        Ok(decimal("-0.50")),
+    ];
+    let missing = vec![Err(Fault::Crc); 5];
+    let mut nameless = row(2, missing);
+    nameless.meter = String::new();
+    let rows = [row(1, values), nameless];
+    let mut out = Vec::new();
+    printed(|out| Stream::new(out, Influx), &mut out, &points, &rows);
+    assert_eq!(
+        String::from_utf8(out).expect("text"),
+        "meter,meter=mine,unit_id=1 status=\"timeout\",a=18446744073709551615,c=1e300,\
+         d=\"say \\\"hi\\\",\\\\ you\\\\n\",0x6B\\ c\\,d\\=e=-0.50 1795320993123400000\n\
+         meter,unit_id=2 status=\"crc\" 1795320993123400000\n"
+    );
+}
+
+#[test]
+fn a_row_of_csv_is_one_line_whatever_its_text_and_units_are() {
+    let points = [point("a", Some("k\nWh, \"net\"")), point("b", None)];
+    let rows = [row(
+        1,
+        vec![Ok(text("one\ntwo\r\n\"three\"\0")), Ok(decimal("1"))],
+    )];
+    let mut wide = Vec::new();
+    let format = WideCsv(Names::WithUnits);
+    printed(|out| Stream::new(out, format), &mut wide, &points, &rows);
+    assert_eq!(
+        String::from_utf8(wide).expect("text"),
+        "time,meter,unit_id,status,\"a [k\\nWh, \"\"net\"\"]\",b\n\
+         2026-11-22T04:16:33.123Z,mine,1,ok,\"one\\ntwo\\r\\n\"\"three\"\"\\u{0}\",1\n"
+    );
+    let mut long = Vec::new();
+    printed(|out| Stream::new(out, LongCsv), &mut long, &points, &rows);
+    assert_eq!(long.split(|byte| *byte == b'\n').count(), 4);
+}
+
+#[test]
+fn every_line_begins_as_its_format_says() {
+    let points = [point("a", None)];
+    let formats: [(Box<dyn LineFormat>, &str); 2] = [
+        (Box::new(JsonLines), "{\"time\":\""),
+        (Box::new(Influx), "meter,"),
+    ];
+    for (format, prefix) in formats {
+        let start = format.start(&points).expect("memory takes everything");
+        assert_eq!(start, Start::Prefix(prefix));
+        assert_eq!(start.head(), b"");
+        for row in [
+            row(1, vec![Ok(decimal("1"))]),
+            row(2, vec![Err(Fault::Crc)]),
+        ] {
+            let lines = format.lines(&points, &row);
+            let lines = lines.expect("memory takes everything");
+            assert!(lines.starts_with(prefix.as_bytes()));
+        }
+    }
+}
+
+#[test]
 fn a_json_array_without_rows_is_empty() {
     let mut out = Vec::new();
     printed(Json::new, &mut out, &[], &[]);
@@ -160,15 +230,16 @@ fn a_json_array_without_rows_is_empty() {
 }
 
 #[test]
-fn on_a_terminal_text_from_a_meter_cannot_steer_it() {
+fn text_from_a_meter_cannot_steer_a_terminal() {
     let points = [point("a", None)];
     let rows = [row(1, vec![Ok(text("\u{1b}[2Jgone\u{7}"))])];
     let mut csv = Vec::new();
-    let style = CsvStyle {
-        terminal: true,
-        ..CsvStyle::default()
-    };
-    printed(|out| WideCsv::new(out, style), &mut csv, &points, &rows);
+    printed(
+        |out| Stream::new(out, WideCsv::default()),
+        &mut csv,
+        &points,
+        &rows,
+    );
     assert_eq!(
         String::from_utf8(csv).expect("text"),
         "time,meter,unit_id,status,a\n\

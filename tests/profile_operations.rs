@@ -7,7 +7,7 @@ use meterpoll::profile::{Operation, Profile, builtin};
 
 /// The operations of the PQM by number (F7: N253, O221), `!` behind those that are dangerous or lose
 /// data.
-const PQM: &str = "1 reset !, 2 alarm_relay_on !, 3 alarm_relay_off !, 4 aux_1_on !, 5 aux_1_off !, \
+const PQM: &str = "1 reset, 2 alarm_relay_on !, 3 alarm_relay_off !, 4 aux_1_on !, 5 aux_1_off !, \
                    6 aux_2_on !, 7 aux_2_off !, 8 aux_3_on !, 9 aux_3_off !, 10 set_clock_time, \
                    11 set_clock_date, 12 show_flash_message, 13 simulate_key !, 14 clear_energy !, \
                    15 clear_max_demand !, 16 clear_minmax_current !, 17 clear_minmax_voltage !, \

@@ -82,7 +82,7 @@ fn every_example_that_needs_no_adapter_runs() {
             ran += 1;
         }
     }
-    assert_eq!(ran, 10);
+    assert_eq!(ran, 20);
 }
 
 #[test]
@@ -207,7 +207,15 @@ fn keys() -> Vec<&'static str> {
 
 #[test]
 fn every_option_it_names_is_in_the_help() {
-    let help = ["read-registers", "loopback", "simulate"]
+    let commands = [
+        "read-registers",
+        "write-setpoint",
+        "broadcast",
+        "execute-operation",
+        "loopback",
+        "simulate",
+    ];
+    let help = commands
         .map(|command| Program::new(&format!("{command} --help")).output().stdout)
         .concat();
     let help = String::from_utf8(help).expect("text");

@@ -11,7 +11,7 @@ use jiff::Timestamp;
 use meterpoll::profile::{Setup, builtin};
 use meterpoll::sim::{Meter, kinds, values};
 
-use support::simulated::{at, read, unit};
+use support::simulated::{at, read, unit, write};
 
 fn now() -> Timestamp {
     at("2026-01-15T12:30:00Z")
@@ -224,4 +224,20 @@ fn what_is_wrong_is_told_with_file_and_line() {
         latin.apply(&mut [meter("pqm", 17)]),
         Err("FILE:2: not UTF-8: save the file in that encoding".to_owned())
     );
+}
+
+#[test]
+fn what_is_given_stays_until_it_is_written() {
+    let mut meters = [meter("pm290", 2)];
+    let text = "point,value\nct_primary_current,400\nenergy_active_import,1234\npulse_kvarh,7\n";
+    assert_eq!(Values::new("written", text).apply(&mut meters), Ok(()));
+    let [meter] = &mut meters;
+    let now = at("2026-01-15T12:30:00Z");
+    assert_eq!(read(meter, 0x011F, 2, now), Ok(vec![1234, 0]));
+    assert_eq!(write(meter, 0x0902, 250, now), None);
+    assert_eq!(write(meter, 0x0702, 8, now), None);
+    assert_eq!(write(meter, 0x0120, 0, now), None);
+    assert_eq!(shown(meter, "ct_primary_current"), "250");
+    assert_eq!(shown(meter, "pulse_kvarh"), "8");
+    assert_eq!(shown(meter, "energy_active_import"), "0");
 }

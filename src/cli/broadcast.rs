@@ -26,12 +26,12 @@ pub struct BroadcastWrite {
         required = true,
         value_name = "WHAT=VALUE",
         long_help = "\
-What to write to every meter on the line, in this order: points and values as
-write-setpoint takes them, or the name of one operation that
+What to write to every meter on the line, in this order: points and values as \
+write-setpoint takes them, or the name of one operation that \
 `execute-operation --list` shows.
 
-clock=now sets the clock to this computer's local time, at the moment it is
-sent; clock=2026-11-22T13:27:10.015 to another one. A time with an offset
+clock=now sets the clock to this computer's local time, at the moment it is \
+sent; clock=2026-11-22T13:27:10.015 to another one. A time with an offset \
 (...Z, ...+01:00) is turned into local time."
     )]
     pub what: Vec<String>,

@@ -19,6 +19,7 @@ mod line;
 )]
 mod loopback;
 mod meters;
+mod output;
 #[allow(
     rustdoc::broken_intra_doc_links,
     reason = "its doc comments are help texts, where [default: ...] is no link"
@@ -49,6 +50,7 @@ pub use loopback::{Loopback, LoopbackFormat};
 pub use meters::{
     CheckMeters, ExportMeter, Meters, MetersCommand, ShowFormat, ShowMeter, VerifyMeter,
 };
+pub use output::{OutputArguments, SchemaChange};
 pub use read_registers::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
 pub use read_status::{ReadStatus, StatusFormat};
 pub use simulate::Simulate;

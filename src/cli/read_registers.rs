@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::line::LineArguments;
+use super::output::OutputArguments;
 use super::values::Units;
 
 const EXAMPLES: &str = "\
@@ -10,6 +11,7 @@ Examples:
   meterpoll read-registers -p sim: -a 17 --meter pqm
   meterpoll read-registers -p /dev/ttyUSB0 -a 17 --meter pqm 'current_*'
   meterpoll read-registers -p /dev/ttyUSB0 -a 1-5 --meter pqm @energy -f csv
+  meterpoll read-registers -p /dev/ttyUSB0 -a 1-5 --meter pqm @energy -o energy.csv
   meterpoll read-registers -p /dev/ttyUSB0 -b 19200 -P even -a 1 0x0000+10
   meterpoll read-registers -p /dev/ttyUSB0 -a 1 '0x11F:u32/CDAB*0.1=kWh'
   meterpoll read-registers -b 19200 -a 17 --meter pqm @power --plan";
@@ -51,15 +53,18 @@ Always: registers by protocol address, from 0:
     /// How register numbers are written
     #[arg(long, value_name = "FORM", default_value = "protocol")]
     pub numbering: NumberingChoice,
-    /// How readings are printed
-    #[arg(short, long, value_name = "FORMAT", default_value = "table")]
-    pub format: FormatChoice,
+    /// How readings are printed [default: table; with --output csv]
+    #[arg(short, long, value_name = "FORMAT")]
+    pub format: Option<FormatChoice>,
     /// Shape of CSV [default: wide]
     #[arg(long, value_name = "SHAPE")]
     pub layout: Option<Layout>,
     /// Put units into the header of wide CSV
     #[arg(long)]
     pub units: bool,
+    /// Where the rows go.
+    #[command(flatten)]
+    pub output: OutputArguments,
     /// Print the requests in hex and send nothing
     #[arg(long)]
     pub dry_run: bool,
@@ -102,6 +107,8 @@ pub enum FormatChoice {
     Json,
     /// One object a line, one a reading
     Jsonl,
+    /// Influx line protocol, a line a row
+    Influx,
 }
 
 /// `--layout`.

@@ -67,7 +67,7 @@ Its header has the columns point and value; rows of a column unit_id are for tha
 other columns are passed over, so that what `read-registers -f csv --layout long` wrote is played \
 back. A value is written as it reads: 415, 60.01, on, 23:59:59.000. In place of a point there can \
 be a register, 0x0240, and the number in it. Empty values are left to the load, and of several rows \
-for one point the last one counts."
+for one point the last one counts. A client that writes one of them ends that."
     )]
     pub values: Option<PathBuf>,
     /// Which loads are measured: the same seed and time give the same values; `sim:` has 17

@@ -1,5 +1,6 @@
 //! Values of options: durations with a unit, lists of units, speeds.
 
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -33,6 +34,15 @@ pub(super) fn baud(text: &str) -> Result<u32, String> {
     match text.parse() {
         Ok(baud) if baud >= 50 => Ok(baud),
         _ => Err("a speed is a whole number of bits a second from 50, such as 9600".to_owned()),
+    }
+}
+
+/// A file to append to.
+pub(super) fn file(text: &str) -> Result<PathBuf, String> {
+    match text {
+        "" => Err("a file has a name".to_owned()),
+        "-" => Err("rows go to stdout without it; a file of that name is ./-".to_owned()),
+        name => Ok(name.into()),
     }
 }
 

@@ -25,8 +25,8 @@ pub struct WriteSetpoint {
         long_help = "\
 What to write, in this order; neighbours that follow each other go in one request.
 
-With --meter: a point's name and a value as the point reads: a number in its
-unit (ct_primary=200), a label (vt_wiring='3-wire direct'), a text, a date, a
+With --meter: a point's name and a value as the point reads: a number in its \
+unit (ct_primary=200), a label (vt_wiring='3-wire direct'), a text, a date, a \
 time. A number that begins with 0x is the register's own (ct_primary=0x00C8).
 
 Always: registers by protocol address, from 0:

@@ -109,7 +109,7 @@ impl Client {
         pause: Duration,
     ) -> Result<(), Failure> {
         let pause = if self.sent { pause } else { Duration::ZERO };
-        match self.line.wait_quiet(pause, asked.patience.timeout)? {
+        match self.wait_quiet(pause, asked.patience.timeout)? {
             Quiet::Never { discarded } => return Err(Failure::NeverQuiet { discarded }),
             Quiet::Reached { discarded: 0 } => {}
             Quiet::Reached { discarded } => {
@@ -118,6 +118,32 @@ impl Client {
             }
         }
         Ok(())
+    }
+
+    /// Waits until the line is silent, at most for `limit`, and no longer once the program is to stop.
+    pub(super) fn wait_quiet(
+        &mut self,
+        pause: Duration,
+        limit: Duration,
+    ) -> Result<Quiet, TransportError> {
+        let give_up = self.line.now() + limit;
+        let mut thrown_away = 0;
+        loop {
+            let left = give_up.saturating_sub(self.line.now());
+            match self.line.wait_quiet(pause, self.piece_of(left))? {
+                Quiet::Reached { discarded } => {
+                    return Ok(Quiet::Reached {
+                        discarded: thrown_away + discarded,
+                    });
+                }
+                Quiet::Never { discarded } => thrown_away += discarded,
+            }
+            if self.is_stopping() || self.line.now() >= give_up {
+                return Ok(Quiet::Never {
+                    discarded: thrown_away,
+                });
+            }
+        }
     }
 
     /// Sends a request on a silent line and waits for its answer. When this fails, the request may

@@ -27,25 +27,24 @@ impl Client {
     /// # Errors
     /// [`Failure::Port`] when it does not come back, with the reason.
     pub(super) fn regain(&mut self, patience: Patience) -> Result<(), Failure> {
-        let line = &mut self.line;
-        let Some(loss) = line.loss().cloned() else {
+        let Some(loss) = self.line.loss().cloned() else {
             return Ok(());
         };
         let attempts = patience.retries.saturating_add(1);
         let within = patience.timeout.saturating_mul(attempts);
-        let give_up = line.now().saturating_add(within);
+        let give_up = self.line.now().saturating_add(within);
         let mut pause = FIRST_PAUSE;
         info!("port {}: trying to open it again", loss.port);
         loop {
-            let Err(error) = line.reopen() else {
-                let away = line.now().saturating_sub(loss.at);
+            let Err(error) = self.line.reopen() else {
+                let away = self.line.now().saturating_sub(loss.at);
                 info!("port {} is back after {} ms", loss.port, away.as_millis());
                 // It can be another adapter.
                 self.echoes = None;
                 return Ok(());
             };
-            let left = give_up.saturating_sub(line.now());
-            if left.is_zero() {
+            let left = give_up.saturating_sub(self.line.now());
+            if left.is_zero() || self.is_stopping() {
                 let source = error.with_holders();
                 return Err(Failure::Port(TransportError::NotBack {
                     port: loss.port,
@@ -53,7 +52,7 @@ impl Client {
                     source,
                 }));
             }
-            line.sleep(pause.min(left));
+            self.line.sleep(pause.min(left));
             pause = (pause * 2).min(LONGEST_PAUSE);
         }
     }

@@ -132,7 +132,8 @@ impl Client {
                 Failure::Exception(ExceptionCode::SERVER_DEVICE_BUSY) => {
                     self.ledger.of(unit).busy += 1;
                     let in_time = |wait: &&Duration| self.line.now() + **wait < give_up;
-                    let Some(wait) = busy_waits.next().filter(in_time) else {
+                    let wait = busy_waits.next().filter(in_time);
+                    let Some(wait) = wait.filter(|_| !self.is_stopping()) else {
                         return Err(failure);
                     };
                     info!("unit {unit}: busy, asking again in {} ms", wait.as_millis());
@@ -154,9 +155,10 @@ impl Client {
                 }
                 failure => {
                     let ends = ends_with_silence && failure.is_silence();
+                    let is_worth_it = failure.is_worth_a_retry() && !self.is_stopping();
                     let retry = retries
                         .next()
-                        .filter(|retry| failure.is_worth_a_retry() && !(ends && *retry == 1));
+                        .filter(|retry| is_worth_it && !(ends && *retry == 1));
                     let Some(retry) = retry else {
                         return Err(failure);
                     };

@@ -37,6 +37,9 @@ pub enum Unwritten {
     /// It was not sent.
     #[error("not sent: {0}")]
     NotSent(Failure),
+    /// It was not sent, for the program is to stop.
+    #[error("not sent: the program was stopped")]
+    Stopped,
     /// The unit, or a gateway before it, has refused it.
     #[error("the meter refused: {0}")]
     Refused(ExceptionCode),
@@ -68,12 +71,22 @@ impl Client {
         let give_up = self.line.now() + patience.in_all();
         let mut busy_waits = BUSY_WAITS.iter();
         let mut pause = patience.pause;
+        let mut is_first = true;
         loop {
             let silent = self.wait_for_silence(&asked, pause);
             silent.map_err(|failure| {
                 self.count(unit, Some(&failure));
                 Unwritten::NotSent(failure)
             })?;
+            // Whoever stops the program does not want it to be done from now on.
+            if self.is_stopping() {
+                return Err(if is_first {
+                    Unwritten::Stopped
+                } else {
+                    Unwritten::Refused(ExceptionCode::SERVER_DEVICE_BUSY)
+                });
+            }
+            is_first = false;
             let result = self.exchange(&asked);
             self.count(unit, result.as_ref().err());
             let reply = result.map_err(Unwritten::Unknown)?.reply;
@@ -124,12 +137,15 @@ impl Client {
         } else {
             Duration::ZERO
         };
-        let quiet = self.line.wait_quiet(pause, patience.timeout);
+        let quiet = self.wait_quiet(pause, patience.timeout);
         match quiet.map_err(|lost| Unwritten::NotSent(lost.into()))? {
             Quiet::Reached { .. } => {}
             Quiet::Never { discarded } => {
                 return Err(Unwritten::NotSent(Failure::NeverQuiet { discarded }));
             }
+        }
+        if self.is_stopping() {
+            return Err(Unwritten::Stopped);
         }
         let frame = rtu::encode_broadcast(Broadcast, write);
         let unknown = |lost| Unwritten::Unknown(Failure::Port(lost));

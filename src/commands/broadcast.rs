@@ -53,18 +53,10 @@ pub(super) fn run(
         print(format!("# {place}\n{}", message.shown_first()).as_bytes())?;
     }
     let mut code = ExitCode::Done;
-    let result = consent.obtain(&place).and_then(|()| {
+    let result = consent.obtain(&place, None).and_then(|()| {
         let stop = Stop::listen_while_writing();
         client.stop_when(stop.flag());
-        code = send(
-            arguments,
-            &message,
-            &line,
-            &limits,
-            &mut client,
-            &stop,
-            report,
-        )?;
+        code = send(arguments, &message, &line, &limits, &mut client, report)?;
         let sent = Sent {
             message: &message,
             at: client.utc_now(),
@@ -92,17 +84,12 @@ fn send(
     line: &LinePlan<'_>,
     limits: &Limits,
     client: &mut Client,
-    stop: &Stop,
     report: &mut Report,
 ) -> Result<ExitCode, CommandError> {
     let place = format!("all meters on {}", line.name());
     let timing = Timing::Paced(line.settings);
     let count = message.writes(client.utc_now())?.len();
     for index in 0..count {
-        if stop.requested().is_some() {
-            report::problem(&place, "the rest was not sent");
-            break;
-        }
         // A clock is right when the last byte has arrived: so much later than now.
         let frame = |write: &_| rtu::encode_broadcast(Broadcast, write).as_bytes().len();
         let length = message.writes(client.utc_now())?.get(index).map(frame);
@@ -112,6 +99,10 @@ fn send(
             break;
         };
         let patience = line.patience(limits);
+        let not_sent = match index {
+            0 => format!("{place}: not sent"),
+            _ => format!("{place}: request {} of {count} not sent", index + 1),
+        };
         match client.broadcast(write, arguments.turnaround, patience) {
             // Nobody answers a broadcast, so nobody refuses it.
             Ok(()) | Err(Unwritten::Refused(_)) => {}
@@ -121,8 +112,13 @@ fn send(
                 return Ok(ExitCode::WriteUnknown);
             }
             Err(Unwritten::NotSent(failure)) => {
-                report.failure(&format!("{place}: not sent"), &failure);
+                report.failure(&not_sent, &failure);
                 return Ok(ExitCode::of(0, &[Fault::from(&failure)]));
+            }
+            Err(Unwritten::Stopped) => {
+                report::problem(&not_sent, "the program was stopped");
+                // Whatever stopped it says what to end with.
+                return Ok(ExitCode::Terminated);
             }
         }
     }

@@ -3,6 +3,7 @@
 use std::io::{self, BufRead, IsTerminal, Write};
 
 use super::CommandError;
+use super::signals::Stop;
 use crate::cli::Care;
 use crate::output::escape;
 
@@ -45,31 +46,41 @@ impl Consent {
         })
     }
 
-    /// Asks, where that is needed, and returns when the answer is yes. `whom` is who it is done to.
+    /// Asks, where that is needed, and returns when the answer is yes. `whom` is who it is done to;
+    /// `stop` listens to signals already, and lets them end the program meanwhile.
     ///
     /// # Errors
     /// [`CommandError::Declined`] for any other answer, and for none.
-    pub(super) fn obtain(&self, whom: &str) -> Result<(), CommandError> {
+    pub(super) fn obtain(&self, whom: &str, stop: Option<&Stop>) -> Result<(), CommandError> {
         let Self::Ask(hazards) = self else {
             return Ok(());
         };
-        let hazards = hazards.iter();
-        let lines = hazards.flat_map(|Hazard { name, what }| [name, " ", what, "\n"]);
-        let question = lines.chain(["Do this to ", whom, "? Type yes: "]);
-        let question: String = question.collect();
-        let mut answer = String::new();
-        let mut terminal = io::stderr().lock();
-        let asked = write!(terminal, "{}", escape_lines(&question)).and_then(|()| terminal.flush());
-        let read = asked.and_then(|()| io::stdin().lock().read_line(&mut answer));
-        if read.is_ok() && matches!(answer.trim(), "yes" | "y" | "Yes" | "YES") {
-            return Ok(());
+        match stop {
+            Some(stop) => stop.while_asking(|| ask(hazards, whom)),
+            None => ask(hazards, whom),
         }
-        if !answer.ends_with('\n') {
-            // The message after this begins on a line of its own.
-            let _ = writeln!(terminal);
-        }
-        Err(CommandError::Declined)
     }
+}
+
+fn ask(hazards: &[Hazard], whom: &str) -> Result<(), CommandError> {
+    let hazards = hazards.iter();
+    let lines = hazards.flat_map(|Hazard { name, what }| [name, " ", what, "\n"]);
+    let question = lines.chain(["Do this to ", whom, "? Type yes: "]);
+    let question: String = question.collect();
+    let mut answer = String::new();
+    let mut terminal = io::stderr().lock();
+    let asked = write!(terminal, "{}", escape_lines(&question)).and_then(|()| terminal.flush());
+    let read = asked.and_then(|()| io::stdin().lock().read_line(&mut answer));
+    // What somebody was about to type as the terminal closed is no answer.
+    let is_typed = read.is_ok() && answer.ends_with('\n');
+    if is_typed && matches!(answer.trim(), "yes" | "y" | "Yes" | "YES") {
+        return Ok(());
+    }
+    if !is_typed {
+        // The message after this begins on a line of its own.
+        let _ = writeln!(terminal);
+    }
+    Err(CommandError::Declined)
 }
 
 /// Profiles are files of somebody.

@@ -4,6 +4,7 @@ use std::io;
 
 use thiserror::Error;
 
+use crate::append::AppendError;
 use crate::codec::{AddressError, Unit};
 use crate::profile::assignment::AssignError;
 use crate::profile::find::FindError;
@@ -25,11 +26,13 @@ pub enum CommandError {
     /// The selection is wrong.
     #[error(transparent)]
     Select(#[from] SelectError),
-    /// Two columns of a wide table would have one name.
-    #[error("'{name}' would be two columns of one name in wide CSV")]
+    /// Two columns or fields would have one name.
+    #[error("'{name}' would be two columns of one name in {format}")]
     ColumnClash {
         /// The name.
         name: String,
+        /// The format that has a column a name.
+        format: &'static str,
     },
     /// What was typed is nothing that can be written.
     #[error(transparent)]
@@ -272,6 +275,18 @@ pub enum CommandError {
     /// The ports cannot be listed.
     #[error(transparent)]
     Ports(#[from] ListError),
+    /// Rows could not be appended to the file that is for them; none were taken.
+    #[error(transparent)]
+    Append(#[from] AppendError),
+    /// Rows that were taken could not be appended.
+    #[error("the readings were taken, and cannot be written")]
+    Unwritten {
+        /// To which file, and why.
+        #[source]
+        error: AppendError,
+        /// The rows.
+        lines: String,
+    },
     /// Stdout does not take what is written.
     #[error("the output cannot be written")]
     Output(#[source] io::Error),

@@ -64,11 +64,10 @@ pub(super) fn run(
         stop: None,
         outcome: Outcome::default(),
     };
-    let result = task.all(&units, &mut client, report);
+    task.all(&units, &mut client, report);
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
     // lost has none.
     let _ = client.finish();
-    result?;
     let stopped = task.stop.as_ref().and_then(Stop::requested);
     Ok(task.outcome.code(stopped))
 }
@@ -85,21 +84,24 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    fn all(
-        &mut self,
-        units: &[Unit],
-        client: &mut Client,
-        report: &mut Report,
-    ) -> Result<(), CommandError> {
+    fn all(&mut self, units: &[Unit], client: &mut Client, report: &mut Report) {
         for (index, unit) in units.iter().copied().enumerate() {
-            self.unit(unit, client, report)?;
-            let stop = self.stop.as_ref();
-            if client.is_lost() || stop.is_some_and(|stop| stop.requested().is_some()) {
+            let result = self.unit(unit, client, report);
+            let is_over = result.is_err() || client.is_lost() || self.is_stopped();
+            if let Err(error) = result {
+                // What became of the units before counts as well.
+                self.outcome.add(report.error(&error));
+            }
+            if is_over {
                 report::untried_units(units.len() - index - 1);
                 break;
             }
         }
-        Ok(())
+    }
+
+    fn is_stopped(&self) -> bool {
+        let stop = self.stop.as_ref();
+        stop.is_some_and(|stop| stop.requested().is_some())
     }
 
     fn unit(
@@ -128,6 +130,11 @@ impl Task<'_> {
         let scales = before.map(|before| before.scales).unwrap_or_default();
         let with = operation.only_with.as_ref();
         allowed(&operation.name, "carried out", with, &scales, self.profile)?;
+        if self.is_stopped() {
+            let text = format!("{} was not sent: the program was stopped", operation.name);
+            report::problem(&place, &text);
+            return Ok(());
+        }
         if !report.is_quiet() {
             let shown = format!(
                 "# {} {place}\n{}: {}\n",
@@ -135,7 +142,7 @@ impl Task<'_> {
             );
             print(shown.as_bytes())?;
         }
-        self.consent.obtain(&place)?;
+        self.consent.obtain(&place, self.stop.as_ref())?;
 
         let stop = self.stop.get_or_insert_with(Stop::listen_while_writing);
         client.stop_when(stop.flag());
@@ -149,7 +156,7 @@ impl Task<'_> {
         let deed = Deed {
             place: &place,
             name: &operation.name,
-            what: &format!("{}:", operation.name),
+            value: None,
             done: "done",
             find_out: None,
         };

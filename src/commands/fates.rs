@@ -12,8 +12,8 @@ pub(super) struct Deed<'a> {
     pub(super) place: &'a str,
     /// The point or operation.
     pub(super) name: &'a str,
-    /// What was to be done, with its value: `ct_primary: 200 A`.
-    pub(super) what: &'a str,
+    /// The value it was to be given, with its unit.
+    pub(super) value: Option<&'a str>,
     /// `written`, `done`.
     pub(super) done: &'static str,
     /// The command that shows what the meter holds, where one does.
@@ -54,7 +54,7 @@ pub(super) fn tell(deed: &Deed<'_>, fate: &Fate, report: &mut Report) -> ExitCod
     let Deed { place, name, .. } = deed;
     match fate {
         Fate::ReadBack => {
-            report.success(&format!("{}, {} and read back", deed.what, deed.done));
+            report.success(&format!("{} and read back", deed.told()));
             ExitCode::Done
         }
         Fate::Confirmed(Unread::Failed(fault)) => {
@@ -71,7 +71,7 @@ pub(super) fn tell(deed: &Deed<'_>, fate: &Fate, report: &mut Report) -> ExitCod
                 }
                 Unread::Momentary | Unread::NotAsked | Unread::Failed(_) => "",
             };
-            report.success(&format!("{}, {}{note}", deed.what, deed.done));
+            report.success(&format!("{}{note}", deed.told()));
             ExitCode::Done
         }
         Fate::Accepted => {
@@ -82,8 +82,9 @@ pub(super) fn tell(deed: &Deed<'_>, fate: &Fate, report: &mut Report) -> ExitCod
             ExitCode::WriteUnknown
         }
         Fate::Otherwise(found) => {
-            let text = format!("was {}, and the meter holds {found}", deed.done);
-            report::problem(&format!("{place}, {}", deed.what), &text);
+            let value = deed.value.unwrap_or("another value");
+            let text = format!("{value} was {}, and the meter holds {found}", deed.done);
+            report::problem(&format!("{place}, {name}"), &text);
             report.advise("the meter keeps it within its own limits, or something else sets it");
             ExitCode::WriteUnknown
         }
@@ -106,12 +107,26 @@ pub(super) fn tell(deed: &Deed<'_>, fate: &Fate, report: &mut Report) -> ExitCod
 }
 
 impl Deed<'_> {
+    /// `ct_primary: 200 A, written`.
+    fn told(&self) -> String {
+        let Self { name, done, .. } = self;
+        match self.value {
+            Some(value) => format!("{name}: {value}, {done}"),
+            None => format!("{name}: {done}"),
+        }
+    }
+
     fn unwritten(&self, why: &Unwritten, report: &mut Report) -> ExitCode {
         let at = format!("{}, {}", self.place, self.name);
         match why {
             Unwritten::NotSent(failure) => {
                 report.failure(&format!("{at}: not sent"), failure);
                 ExitCode::of(0, &[Fault::from(failure)])
+            }
+            // Whatever stopped it says what to end with.
+            Unwritten::Stopped => {
+                report::problem(&at, &why.to_string());
+                ExitCode::Done
             }
             Unwritten::Refused(code) => {
                 report.refused(&at, *code);

@@ -1,10 +1,10 @@
 //! `read-registers`: points of meters, once.
 
 use std::collections::BTreeSet;
-use std::io::{self, IsTerminal, Write};
 
 use super::asking::{Asking, units};
 use super::open_line::LinePlan;
+use super::outlet::{self, Outlet};
 use super::report::{self, Report};
 use super::show_plan::ShownPlan;
 use super::signals::Stop;
@@ -12,8 +12,9 @@ use super::{CommandError, ExitCode, print};
 use crate::cli::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
 use crate::client::Client;
 use crate::codec::{FunctionCode, ReadFunction, Unit};
-use crate::output::csv::{CsvStyle, WIDE_COLUMNS};
-use crate::output::{Heading, Json, JsonLines, LongCsv, Sink, Table, WideCsv};
+use crate::output::Heading;
+use crate::output::csv::WIDE_COLUMNS;
+use crate::output::influx::INFLUX_NAMES;
 use crate::profile::selector::{Numbering, Reading, select};
 use crate::profile::{Limits, Point, Profile, find};
 use crate::readings::{Fault, Row};
@@ -39,10 +40,19 @@ pub(super) fn run(
         return show(arguments, &line, &units, &asking);
     }
 
+    let heading = match units.len() {
+        _ if !report.is_quiet() => Heading::Full {
+            line: asking.line.clone(),
+        },
+        0 | 1 => Heading::None,
+        _ => Heading::Unit,
+    };
+    // Before anything is sent: where the rows cannot go, none are taken.
+    let mut outlet = outlet::open(arguments, &points, heading)?;
     let mut client = line.open()?;
     // From here on a row is in hand; before, a signal ends the program where it is.
     let stop = Stop::listen();
-    let result = read(arguments, &units, &asking, &stop, &mut client, report);
+    let result = read(&mut *outlet, &units, &asking, &stop, &mut client, report);
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
     // lost has none.
     let _ = client.finish();
@@ -77,21 +87,13 @@ fn show(
 
 /// Reads every unit once.
 fn read(
-    arguments: &ReadRegisters,
+    outlet: &mut dyn Outlet,
     units: &[Unit],
     asking: &Asking<'_>,
     stop: &Stop,
     client: &mut Client,
     report: &mut Report,
 ) -> Result<ExitCode, CommandError> {
-    let heading = match units.len() {
-        _ if !report.is_quiet() => Heading::Full {
-            line: asking.line.clone(),
-        },
-        0 | 1 => Heading::None,
-        _ => Heading::Unit,
-    };
-    let mut sink = sink(arguments, heading);
     let mut delivered = 0;
     let mut faults = Vec::new();
     // A lost port is looked for by the next unit; where it does not come back, each of the others
@@ -108,15 +110,14 @@ fn read(
             is_away = taken.is_port_away();
             taken.row
         };
-        sink.row(asking.points, &row)
-            .map_err(CommandError::Output)?;
+        outlet.row(asking.points, &row)?;
         faults.extend(row.faults());
         delivered += row.readings.len() - row.faults().count();
         if stop.requested().is_some() {
             break;
         }
     }
-    sink.finish().map_err(CommandError::Output)?;
+    outlet.finish()?;
     if untried > 0 {
         report::untried_units(untried);
     }
@@ -125,13 +126,19 @@ fn read(
 
 /// Refuses options that would do nothing.
 fn effects(arguments: &ReadRegisters) -> Result<(), CommandError> {
-    let is_csv = arguments.format == FormatChoice::Csv;
+    let format = outlet::format(arguments);
+    let is_csv = format == FormatChoice::Csv;
+    let is_lines = !matches!(format, FormatChoice::Table | FormatChoice::Json);
     let no_effect = |option, what| Err(CommandError::NoEffect { option, what });
     match arguments.layout {
         Some(_) if arguments.plan => no_effect("--layout", "readings"),
         _ if arguments.plan && arguments.units => no_effect("--units", "readings"),
-        _ if arguments.plan && arguments.format != FormatChoice::Table => {
-            no_effect("--format", "readings")
+        _ if arguments.plan && arguments.output.output.is_some() => {
+            no_effect("--output", "readings")
+        }
+        _ if arguments.plan && format != FormatChoice::Table => no_effect("--format", "readings"),
+        _ if arguments.output.output.is_some() && !is_lines => {
+            no_effect("--output", "--format csv, jsonl or influx")
         }
         Some(_) if !is_csv => no_effect("--layout", "--format csv"),
         Some(Layout::Long) if arguments.units => no_effect("--units", "wide CSV"),
@@ -165,12 +172,15 @@ fn points(
             });
         }
     }
-    if arguments.format == FormatChoice::Csv && arguments.layout != Some(Layout::Long) {
-        let mut names: BTreeSet<&str> = WIDE_COLUMNS.into();
-        if let Some(point) = points.iter().find(|point| !names.insert(&point.name)) {
-            let name = point.name.clone();
-            return Err(CommandError::ColumnClash { name });
-        }
+    let (format, taken): (_, &[&str]) = match (outlet::format(arguments), arguments.layout) {
+        (FormatChoice::Csv, None | Some(Layout::Wide)) => ("wide CSV", &WIDE_COLUMNS),
+        (FormatChoice::Influx, _) => ("Influx line protocol", &INFLUX_NAMES),
+        _ => return Ok(points),
+    };
+    let mut names: BTreeSet<&str> = taken.iter().copied().collect();
+    if let Some(point) = points.iter().find(|point| !names.insert(&point.name)) {
+        let name = point.name.clone();
+        return Err(CommandError::ColumnClash { name, format });
     }
     Ok(points)
 }
@@ -202,20 +212,4 @@ fn function(arguments: &ReadRegisters, limits: &Limits) -> ReadFunction {
     typed_function(arguments)
         .filter(|_| limits.interchangeable_reads)
         .unwrap_or_else(|| limits.read_function())
-}
-
-fn sink(arguments: &ReadRegisters, heading: Heading) -> Box<dyn Sink> {
-    let out = io::stdout();
-    let style = CsvStyle {
-        units: arguments.units,
-        terminal: out.is_terminal(),
-    };
-    let out: Box<dyn Write> = Box::new(out.lock());
-    match (arguments.format, arguments.layout) {
-        (FormatChoice::Table, _) => Box::new(Table::new(out, heading)),
-        (FormatChoice::Csv, Some(Layout::Long)) => Box::new(LongCsv::new(out, style)),
-        (FormatChoice::Csv, _) => Box::new(WideCsv::new(out, style)),
-        (FormatChoice::Json, _) => Box::new(Json::new(out)),
-        (FormatChoice::Jsonl, _) => Box::new(JsonLines::new(out)),
-    }
 }

@@ -1,31 +1,22 @@
-//! Turns errors into messages, hints and exit codes: the one place for all three.
+//! Turns errors into messages and exit codes, with the hints of [`hints`](super::hints): the one place
+//! for that.
 
 use std::collections::BTreeSet;
 use std::error::Error;
 use std::fmt;
 use std::io::{self, Write};
+use std::path::Path;
 
+use super::hints::{failure_hint, hint, write_hint};
 use super::trouble::{self, Place};
 use super::{CommandError, ExitCode};
+use crate::append::Removed;
 use crate::cli::Usage;
 use crate::client::Failure;
-use crate::codec::{AddressError, ExceptionCode};
+use crate::codec::ExceptionCode;
 use crate::output::escape;
-use crate::profile::assignment::AssignError;
-use crate::profile::find::FindError;
-use crate::profile::selector::SelectError;
-use crate::profile::write_plan::WritePlanError;
 use crate::readings::Trouble;
-use crate::transport::holder::Holders;
 use crate::transport::listen::ListenError;
-use crate::transport::{Existing, OpenError, PtyError};
-
-/// What to make of a port that was lost.
-const LOST_HINT: &str = "the adapter was unplugged, or the other side hung up; /dev/serial/by-id \
-                         has a name that stays when it comes back";
-
-/// Where meters can be simulated.
-const PLACES: &str = "a name for a pty, a serial port, rtu+tcp://host:port or tcp://host:port";
 
 /// Prints what there is to say to a command line that nothing comes of: help on stdout, errors on
 /// stderr.
@@ -66,6 +57,11 @@ impl Report {
             say(format_args!("error: {error}"));
             causes(error);
             self.hint(hint(error));
+            if let CommandError::Unwritten { lines, .. } = error {
+                for line in lines.lines() {
+                    say(format_args!("not written: {line}"));
+                }
+            }
         }
         exit_code(error)
     }
@@ -181,6 +177,11 @@ pub(super) fn unknown(place: &str, failure: &Failure) {
     causes(failure);
 }
 
+/// Prints what was cut off a file, even when little is wanted: it may be gone for good.
+pub(super) fn removed(file: &Path, removed: &Removed) {
+    say(format_args!("{}: {removed}", file.display()));
+}
+
 /// Writes a line to stderr, made safe for a terminal: it may quote a file or a meter. Where stderr
 /// does not take it, there is nobody to tell, and the readings still go out.
 fn say(line: fmt::Arguments<'_>) {
@@ -242,222 +243,8 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::Ports(_)
         | CommandError::Pty(_)
         | CommandError::Listen(_) => ExitCode::Port,
-        CommandError::Output(_) => ExitCode::Output,
+        CommandError::Append(_) | CommandError::Unwritten { .. } | CommandError::Output(_) => {
+            ExitCode::Output
+        }
     }
-}
-
-fn hint(error: &CommandError) -> Option<String> {
-    let text = match error {
-        CommandError::Unit(AddressError::UnitZero) => {
-            "meters are 1 to 247; `meterpoll broadcast` writes to all of them at once"
-        }
-        CommandError::Unit(_) => {
-            "units go to 247; to 255 only for meters whose profile says so, such as --meter pqm"
-        }
-        CommandError::Select(error) | CommandError::Assign(AssignError::Select(error)) => {
-            return select_hint(error);
-        }
-        CommandError::Assign(AssignError::NoValue { .. } | AssignError::Nothing) => {
-            "values are written ct_primary=200 or 0x1028=500"
-        }
-        CommandError::Assign(AssignError::Several { .. }) => {
-            "name each point with its value, such as tariff_1_cost=1 tariff_2_cost=1"
-        }
-        CommandError::Assign(AssignError::NotOne { .. }) => "name the points, each with its value",
-        CommandError::WritePlan(WritePlanError::Function { .. }) => {
-            "leave --function out: the meter's own is taken"
-        }
-        CommandError::WritePlan(WritePlanError::TooMany { .. }) => "write them in several calls",
-        CommandError::MovesFirst { .. } => "write what changes that last, or by itself",
-        CommandError::NeedsMeter { .. } => {
-            "give the register's own number, 0x and its digits, or leave --dry-run out"
-        }
-        CommandError::NeedsYes { .. } => "--yes says that it is meant",
-        CommandError::NoOperation { near, .. } if !near.is_empty() => return None,
-        CommandError::NoOperation { .. } => "`execute-operation --list` shows them",
-        CommandError::CarriesNothing { .. } => "leave --function out, or give 16",
-        CommandError::BroadcastRead { .. } => {
-            "give points and values, NAME=VALUE, or the name of one operation"
-        }
-        CommandError::BroadcastUnknown => "name the meter with --meter, or send it with --force",
-        CommandError::NotBroadcast { .. } => {
-            "--force sends it all the same; --verify-units shows which meters have taken it"
-        }
-        CommandError::BroadcastOnly { .. } => "`meterpoll broadcast` writes it",
-        CommandError::NoMoment { .. } => {
-            "give now, or a date and time such as 2026-11-22T13:27:10.015"
-        }
-        CommandError::ColumnClash { .. } => {
-            "ask for it once, or use --layout long or another --format"
-        }
-        CommandError::Function { code: 7 | 8, .. } => {
-            "without --meter it is sent all the same, and the meter may refuse it"
-        }
-        CommandError::Function { .. } => {
-            "the other function reads its registers: see --function, or 3xxxx and 4xxxx with \
-             --numbering modicon"
-        }
-        CommandError::Find(FindError::Unknown { .. }) => {
-            "`meterpoll meters list` shows them; a profile file is named by its path"
-        }
-        CommandError::NoPort => "give a serial port with --port, or sim: for the simulated line",
-        CommandError::UnknownSimulation { .. } => "the simulated line is named sim:",
-        CommandError::Find(FindError::Misnamed { .. }) => "give both the same name",
-        CommandError::Tcp { .. } => "give a serial port, or sim: for the simulated line",
-        CommandError::NoPlace { .. } => PLACES,
-        CommandError::Listen(ListenError::Address { .. }) => {
-            "an address is host:port, such as 127.0.0.1:5020; port 0 is any that is free"
-        }
-        CommandError::Listen(ListenError::InUse { .. }) => {
-            "take another port; port 0 is any that is free"
-        }
-        CommandError::UnitTwice { .. } => {
-            "each unit is one meter: --meter pqm=17,18 --meter em24=1"
-        }
-        CommandError::Pty(PtyError::Exists {
-            what: Existing::LinkToPty | Existing::LostLink,
-            ..
-        }) => {
-            "a pty needs a name that is free; a simulation that was killed leaves its own behind: \
-             remove it when none runs there any more"
-        }
-        CommandError::Pty(PtyError::Exists { .. }) => "a pty needs a name that is free",
-        CommandError::NoPath { port } => {
-            return Some(format!(
-                "a serial port is named like /dev/ttyUSB0; ./{port} makes a pty of that name in this \
-                 folder"
-            ));
-        }
-        CommandError::HangUpForGood { .. } => "--port /tmp/meter gives the pty a name",
-        CommandError::FaultNotShown { .. } => "rtu+tcp:// and ptys show all faults",
-        CommandError::Open(error) => return open_hint(error),
-        CommandError::Lost(_) => LOST_HINT,
-        _ => return None,
-    };
-    Some(text.to_owned())
-}
-
-fn select_hint(error: &SelectError) -> Option<String> {
-    let text = match error {
-        SelectError::UnknownPoint { near, .. } if !near.is_empty() => return None,
-        SelectError::UnknownPoint { groups, .. } | SelectError::NoMatch { groups, .. } => {
-            return Some(format!(
-                "groups are {}; '*' is every point",
-                groups.join(", ")
-            ));
-        }
-        SelectError::Lonely { .. } => {
-            "ask for its register by itself, and for those before and behind it apart; points by \
-             name need no such care"
-        }
-        SelectError::PointForm { .. } => "type, factor and unit are for registers by address",
-        SelectError::FunctionClash { .. } => "leave --function out: 3xxxx is 4, 4xxxx is 3",
-        SelectError::NoPoint { .. } => {
-            "points are named (current_a), matched (current_*) or grouped (@energy)"
-        }
-        SelectError::NoMeter { .. } => "name the meter with --meter, or registers as 0x0000+10",
-        SelectError::Malformed { .. } => {
-            "registers are written 0x006B, 107, 0x6B+3 or 0x11F:u32/CDAB*0.1=kWh"
-        }
-        _ => return None,
-    };
-    Some(text.to_owned())
-}
-
-fn open_hint(error: &OpenError) -> Option<String> {
-    let text = match error {
-        OpenError::NotThere { .. } => {
-            "`meterpoll ports` lists the ports; plugging an adapter in shows a new one (a program \
-             such as brltty can take it away again)"
-        }
-        OpenError::NotSerial { .. } => "`meterpoll ports` lists the ports",
-        OpenError::Busy {
-            holders: Holders::Seen(_),
-            ..
-        } => "--wait 30s waits longer for it to end",
-        OpenError::Busy { .. } => {
-            "another program has it open, a cron job or ModemManager perhaps; --wait 30s waits longer"
-        }
-        OpenError::NotPermitted {
-            group: Some(group), ..
-        } => {
-            return Some(format!(
-                "`sudo usermod -aG {group} $USER` and a new login give access"
-            ));
-        }
-        OpenError::NotPermitted { group: None, .. } => {
-            "an administrator or a udev rule must let you use it"
-        }
-        OpenError::Settings { .. } => "try another --baud",
-        _ => return None,
-    };
-    Some(text.to_owned())
-}
-
-/// What to make of a meter that refuses to be written to.
-fn write_hint(code: ExceptionCode) -> Option<&'static str> {
-    Some(match code {
-        ExceptionCode::ILLEGAL_FUNCTION => {
-            "the meter may take the other function, --function 6 or 16"
-        }
-        ExceptionCode::ILLEGAL_DATA_ADDRESS => {
-            "the meter has no such registers, or none that can be written"
-        }
-        ExceptionCode::ILLEGAL_DATA_VALUE => "the meter does not take this value, or not now",
-        _ => return failure_hint(&Failure::Exception(code)),
-    })
-}
-
-pub(super) fn failure_hint(failure: &Failure) -> Option<&'static str> {
-    Some(match failure {
-        Failure::Silence { .. } => {
-            "check --unit, --baud, --parity and --stop-bits against the meter, then power and \
-             wiring (A and B swapped?); a slow meter needs a longer --timeout"
-        }
-        Failure::OnlyEcho => {
-            "the adapter hears itself but no meter: check --unit, --baud and --parity, then the \
-             wiring behind the adapter"
-        }
-        Failure::Damaged { .. } | Failure::Truncated { .. } => {
-            "check --baud, --parity and --stop-bits, then cable, termination and bias resistors"
-        }
-        Failure::Mismatch { .. } => {
-            "a late answer or a second master on the line; a longer --timeout helps with the first"
-        }
-        Failure::Ambiguous => {
-            "the meter has missed more than one read: a longer --timeout helps when it is slow; else \
-             try again in ten seconds"
-        }
-        Failure::NeverQuiet { .. } => {
-            "another master may be talking on this line, or its bias resistors are missing"
-        }
-        Failure::Exception(ExceptionCode::ILLEGAL_FUNCTION) => {
-            "registers by address can be read with the other function, --function 3 or 4"
-        }
-        Failure::Exception(ExceptionCode::ILLEGAL_DATA_ADDRESS) => {
-            "the meter has no such registers, or not as many at once; addresses are as on the \
-             wire, from 0 (for 40001 and the like see --numbering modicon)"
-        }
-        Failure::Exception(ExceptionCode::SERVER_DEVICE_FAILURE) => {
-            "the meter itself failed: its display or its manual may say why"
-        }
-        Failure::Exception(ExceptionCode::ACKNOWLEDGE) => {
-            "the meter is still at work on something: ask again later"
-        }
-        Failure::Exception(ExceptionCode::SERVER_DEVICE_BUSY) => {
-            "the meter is there but busy, perhaps somebody is at its keys: ask again later"
-        }
-        Failure::Exception(ExceptionCode::MEMORY_PARITY_ERROR) => {
-            "the memory of the meter is damaged: it needs service"
-        }
-        Failure::Exception(ExceptionCode::GATEWAY_PATH_UNAVAILABLE) => {
-            "a gateway on the way has no path to this unit: check its setup, and --unit"
-        }
-        Failure::Exception(ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND) => {
-            "a gateway on the way got no answer from the unit: check --unit, then power and wiring \
-             behind the gateway"
-        }
-        Failure::Port(_) => LOST_HINT,
-        Failure::Exception(_) => return None,
-    })
 }

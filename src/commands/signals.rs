@@ -1,15 +1,18 @@
 //! SIGINT, SIGTERM and SIGHUP: the row in hand is finished first. After one of them, SIGINT or
 //! SIGTERM ends the program at once, unless something is being written: then it is said first what
-//! became of that, which takes half a second at the most.
+//! became of that, which takes half a second at the most. While a question waits for its answer,
+//! nothing is being written.
 //!
 //! A second SIGHUP does not: for a window that is closed one comes from the system and one from the
 //! shell, with no time between them.
+//!
+//! SIGXFSZ ends nothing: what cannot be written is told as such.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 #[cfg(unix)]
-use signal_hook::consts::SIGHUP;
+use signal_hook::consts::{SIGHUP, SIGXFSZ};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
@@ -21,6 +24,8 @@ pub(super) struct Stop {
     code: Arc<AtomicUsize>,
     /// Whether one has come.
     raised: Arc<AtomicBool>,
+    /// Up while somebody is asked a question, when there is nothing that a signal has to wait for.
+    asking: Arc<AtomicBool>,
 }
 
 /// What a second signal does.
@@ -46,6 +51,7 @@ impl Stop {
     fn listening(second: Second) -> Self {
         let code = Arc::default();
         let raised: Arc<AtomicBool> = Arc::default();
+        let asking: Arc<AtomicBool> = Arc::default();
         let note = |signal, exit: ExitCode| {
             let _ = flag::register_usize(signal, Arc::clone(&code), usize::from(exit as u8));
             let _ = flag::register(signal, Arc::clone(&raised));
@@ -55,17 +61,36 @@ impl Stop {
             (SIGTERM, ExitCode::Terminated),
         ] {
             // Before the others: the first signal finds the flag down.
-            if second == Second::Waits
-                || flag::register_conditional_default(signal, Arc::clone(&raised)).is_ok()
-            {
+            let ends = match second {
+                Second::Ends => &raised,
+                Second::Waits => &asking,
+            };
+            if flag::register_conditional_default(signal, Arc::clone(ends)).is_ok() {
                 note(signal, exit);
             }
         }
         #[cfg(unix)]
-        if !ignores_hang_ups() {
-            note(SIGHUP, ExitCode::HungUp);
+        {
+            if !ignores_hang_ups() {
+                note(SIGHUP, ExitCode::HungUp);
+            }
+            // Or else a file that has come to its limit (`ulimit -f`) ends the program without a
+            // word; so writing to it fails.
+            let _ = flag::register(SIGXFSZ, Arc::default());
         }
-        Self { code, raised }
+        Self {
+            code,
+            raised,
+            asking,
+        }
+    }
+
+    /// Asks somebody; meanwhile SIGINT and SIGTERM end the program at once.
+    pub(super) fn while_asking<T>(&self, ask: impl FnOnce() -> T) -> T {
+        self.asking.store(true, Ordering::Relaxed);
+        let answer = ask();
+        self.asking.store(false, Ordering::Relaxed);
+        answer
     }
 
     /// A flag that is up once a signal has come.

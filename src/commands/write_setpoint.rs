@@ -13,7 +13,7 @@ use crate::client::Client;
 use crate::codec::{Request, Unit, rtu};
 use crate::output::changes::{Line, table};
 use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, in_pieces};
-use crate::profile::{Limits, Point, Scales, find};
+use crate::profile::{Limits, Scales, find};
 use crate::readings::Fault;
 use crate::writing::{Before, before, carry_out, check};
 
@@ -48,11 +48,10 @@ pub(super) fn run(
         stop: None,
         outcome: Outcome::default(),
     };
-    let result = task.all(&units, &mut client, report);
+    task.all(&units, &mut client, report);
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
     // lost has none.
     let _ = client.finish();
-    result?;
     let stopped = task.stop.as_ref().and_then(Stop::requested);
     Ok(task.outcome.code(stopped))
 }
@@ -81,21 +80,19 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    fn all(
-        &mut self,
-        units: &[Unit],
-        client: &mut Client,
-        report: &mut Report,
-    ) -> Result<(), CommandError> {
+    fn all(&mut self, units: &[Unit], client: &mut Client, report: &mut Report) {
         for (index, unit) in units.iter().copied().enumerate() {
-            let is_lost = self.unit(unit, client, report)?;
+            let is_over = self.unit(unit, client, report).unwrap_or_else(|error| {
+                // What became of the units before counts as well.
+                self.outcome.add(report.error(&error));
+                true
+            });
             let rest = units.len() - index - 1;
-            if is_lost || self.is_stopped() {
+            if is_over || self.is_stopped() {
                 report::untried_units(rest);
                 break;
             }
         }
-        Ok(())
     }
 
     fn is_stopped(&self) -> bool {
@@ -103,7 +100,7 @@ impl Task<'_> {
         stop.is_some_and(|stop| stop.requested().is_some())
     }
 
-    /// Writes to one unit, and returns whether the port is lost.
+    /// Writes to one unit, and returns whether the port is lost, or the line of no use.
     fn unit(
         &mut self,
         unit: Unit,
@@ -135,8 +132,12 @@ impl Task<'_> {
             }
             (ready, None) => ready?,
         };
+        if self.is_stopped() {
+            report::problem(&place, "nothing was written: the program was stopped");
+            return Ok(false);
+        }
         self.show(&place, &before, &changes, &planned, report)?;
-        self.consent.obtain(&place)?;
+        self.consent.obtain(&place, self.stop.as_ref())?;
 
         let stop = self.stop.get_or_insert_with(Stop::listen_while_writing);
         client.stop_when(stop.flag());
@@ -146,13 +147,13 @@ impl Task<'_> {
         let verified = !self.arguments.no_verify && !is_over();
         let inquiry = verified.then_some((&inquiry, &mut memory));
         let fates = check(client, &changes, replies, inquiry, &before.scales);
+        let find_out = self.find_out(unit);
         for (change, fate) in changes.iter().zip(&fates) {
             let name = &change.point.name;
-            let find_out = self.find_out(unit, &change.point);
             let deed = Deed {
                 place: &place,
                 name,
-                what: &format!("{name}: {}", shown(change, &before.scales)),
+                value: Some(&shown(change, &before.scales)),
                 done: "written",
                 find_out: find_out.as_deref(),
             };
@@ -206,9 +207,11 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// The command that shows what a point holds.
-    fn find_out(&self, unit: Unit, point: &Point) -> Option<String> {
-        if !point.access.readable() {
+    /// The command that shows what was written; `None` where nothing of it can be read.
+    fn find_out(&self, unit: Unit) -> Option<String> {
+        let points = self.asking.points.iter();
+        let names: Vec<&str> = points.map(|point| point.name.as_str()).collect();
+        if names.is_empty() {
             return None;
         }
         let port = self.arguments.line.port.as_deref().unwrap_or_default();
@@ -218,7 +221,7 @@ impl Task<'_> {
             .unwrap_or_default();
         Some(format!(
             "meterpoll read-registers -p {port} -a {unit}{meter} {}",
-            point.name
+            names.join(" ")
         ))
     }
 }

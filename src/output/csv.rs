@@ -1,124 +1,85 @@
 //! CSV (RFC 4180, LF line ends): wide, a row a meter; and long, a row a reading.
+//!
+//! A row is always one line: control characters of a text are shown as in `\n`.
 
-use std::io::{self, Write};
+use std::io;
 
 use csv::{Terminator, Writer, WriterBuilder};
 
-use super::{Sink, escape, status, time};
+use super::{LineFormat, escape, status, time};
+use crate::append::Start;
 use crate::profile::{Point, Value};
 use crate::readings::Row;
 
-/// How CSV is written.
+/// How the header of wide CSV names points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct CsvStyle {
-    /// ` [kWh]` behind the names in a wide header.
-    pub units: bool,
-    /// The destination is a terminal, so text from a meter is escaped.
-    pub terminal: bool,
+pub enum Names {
+    /// By their names: `energy_import`.
+    #[default]
+    Bare,
+    /// With their units: `energy_import [kWh]`.
+    WithUnits,
 }
 
 /// The columns every wide row begins with.
 pub const WIDE_COLUMNS: [&str; 4] = ["time", "meter", "unit_id", "status"];
 
+/// The columns of every long row.
+const LONG_COLUMNS: [&str; 7] = [
+    "time", "meter", "unit_id", "point", "value", "unit", "status",
+];
+
 /// `time,meter,unit_id,status,<point>,...`: empty cells for what is missing.
-pub struct WideCsv<W: Write> {
-    out: W,
-    style: CsvStyle,
-    headed: bool,
-}
+#[derive(Debug, Clone, Copy, Default)]
+pub struct WideCsv(pub Names);
 
-impl<W: Write> WideCsv<W> {
-    /// Writes to `out`.
-    pub const fn new(out: W, style: CsvStyle) -> Self {
-        Self {
-            out,
-            style,
-            headed: false,
-        }
-    }
-
-    fn header(&self, points: &[Point]) -> Vec<String> {
+impl LineFormat for WideCsv {
+    fn start(&self, points: &[Point]) -> io::Result<Start> {
         let names = points.iter().map(|point| match &point.unit {
-            Some(unit) if self.style.units => format!("{} [{unit}]", point.name),
+            Some(unit) if self.0 == Names::WithUnits => format!("{} [{unit}]", point.name),
             _ => point.name.clone(),
         });
-        WIDE_COLUMNS
-            .map(str::to_owned)
-            .into_iter()
-            .chain(names)
-            .collect()
+        header(WIDE_COLUMNS.map(str::to_owned).into_iter().chain(names))
     }
-}
 
-impl<W: Write> Sink for WideCsv<W> {
-    fn row(&mut self, points: &[Point], row: &Row) -> io::Result<()> {
-        let mut lines = lines();
-        if !self.headed {
-            lines.write_record(self.header(points))?;
-            self.headed = true;
-        }
-        let cells = row
-            .readings
-            .iter()
-            .map(|reading| cell(reading.as_ref().ok(), self.style));
+    fn lines(&self, _: &[Point], row: &Row) -> io::Result<Vec<u8>> {
+        let cells = row.readings.iter();
+        let cells = cells.map(|reading| cell(reading.as_ref().ok()));
         let fixed = [
             time(row),
             row.meter.clone(),
             row.unit.to_string(),
             status(row.worst()),
         ];
-        lines.write_record(fixed.into_iter().chain(cells))?;
-        put(&mut self.out, lines)
-    }
-
-    fn finish(&mut self) -> io::Result<()> {
-        self.out.flush()
+        let mut lines = lines();
+        lines.write_record(shown(fixed.into_iter().chain(cells)))?;
+        bytes(lines)
     }
 }
 
 /// `time,meter,unit_id,point,value,unit,status`.
-pub struct LongCsv<W: Write> {
-    out: W,
-    style: CsvStyle,
-    headed: bool,
-}
+#[derive(Debug, Clone, Copy, Default)]
+pub struct LongCsv;
 
-impl<W: Write> LongCsv<W> {
-    /// Writes to `out`.
-    pub const fn new(out: W, style: CsvStyle) -> Self {
-        Self {
-            out,
-            style,
-            headed: false,
-        }
+impl LineFormat for LongCsv {
+    fn start(&self, _: &[Point]) -> io::Result<Start> {
+        header(LONG_COLUMNS.map(str::to_owned))
     }
-}
 
-impl<W: Write> Sink for LongCsv<W> {
-    fn row(&mut self, points: &[Point], row: &Row) -> io::Result<()> {
+    fn lines(&self, points: &[Point], row: &Row) -> io::Result<Vec<u8>> {
         let mut lines = lines();
-        if !self.headed {
-            lines.write_record([
-                "time", "meter", "unit_id", "point", "value", "unit", "status",
-            ])?;
-            self.headed = true;
-        }
         for (point, reading) in points.iter().zip(&row.readings) {
-            lines.write_record([
+            lines.write_record(shown([
                 time(row),
                 row.meter.clone(),
                 row.unit.to_string(),
                 point.name.clone(),
-                cell(reading.as_ref().ok(), self.style),
+                cell(reading.as_ref().ok()),
                 point.unit.clone().unwrap_or_default(),
                 status(reading.as_ref().err().copied()),
-            ])?;
+            ]))?;
         }
-        put(&mut self.out, lines)
-    }
-
-    fn finish(&mut self) -> io::Result<()> {
-        self.out.flush()
+        bytes(lines)
     }
 }
 
@@ -132,7 +93,7 @@ pub(super) fn records(
     for row in rows {
         lines.write_record(row)?;
     }
-    lines.into_inner().map_err(csv::IntoInnerError::into_error)
+    bytes(lines)
 }
 
 fn lines() -> Writer<Vec<u8>> {
@@ -141,19 +102,24 @@ fn lines() -> Writer<Vec<u8>> {
         .from_writer(Vec::new())
 }
 
-/// All lines of a row in one write.
-fn put(out: &mut impl Write, lines: Writer<Vec<u8>>) -> io::Result<()> {
-    let bytes = lines
-        .into_inner()
-        .map_err(csv::IntoInnerError::into_error)?;
-    out.write_all(&bytes)?;
-    out.flush()
+fn bytes(lines: Writer<Vec<u8>>) -> io::Result<Vec<u8>> {
+    lines.into_inner().map_err(csv::IntoInnerError::into_error)
 }
 
-fn cell(value: Option<&Value>, style: CsvStyle) -> String {
-    match value {
-        None => String::new(),
-        Some(Value::Text(text)) if style.terminal => escape(text),
-        Some(value) => value.to_string(),
-    }
+fn header(names: impl IntoIterator<Item = String>) -> io::Result<Start> {
+    let mut lines = lines();
+    lines.write_record(shown(names))?;
+    let mut header = bytes(lines)?;
+    // Its line end.
+    header.pop();
+    Ok(Start::Header(header))
+}
+
+/// Cells whose text stays in its line.
+fn shown(cells: impl IntoIterator<Item = String>) -> impl Iterator<Item = String> {
+    cells.into_iter().map(|cell| escape(&cell))
+}
+
+fn cell(value: Option<&Value>) -> String {
+    value.map(Value::to_string).unwrap_or_default()
 }

@@ -6,7 +6,8 @@ use std::io::{self, Write};
 use serde::{Serialize, Serializer};
 use serde_json::value::RawValue;
 
-use super::{Sink, status, time};
+use super::{LineFormat, Sink, status, time};
+use crate::append::Start;
 use crate::profile::{Point, Value};
 use crate::readings::Row;
 
@@ -71,25 +72,18 @@ fn raw(value: &Value) -> Result<Box<RawValue>, serde_json::Error> {
 }
 
 /// One object a line.
-pub struct JsonLines<W: Write>(W);
+#[derive(Debug, Clone, Copy, Default)]
+pub struct JsonLines;
 
-impl<W: Write> JsonLines<W> {
-    /// Writes to `out`.
-    pub const fn new(out: W) -> Self {
-        Self(out)
-    }
-}
-
-impl<W: Write> Sink for JsonLines<W> {
-    fn row(&mut self, points: &[Point], row: &Row) -> io::Result<()> {
-        let mut lines = objects(points, row)?.join("\n");
-        lines.push('\n');
-        self.0.write_all(lines.as_bytes())?;
-        self.0.flush()
+impl LineFormat for JsonLines {
+    fn start(&self, _: &[Point]) -> io::Result<Start> {
+        // The first key of an object.
+        Ok(Start::Prefix("{\"time\":\""))
     }
 
-    fn finish(&mut self) -> io::Result<()> {
-        self.0.flush()
+    fn lines(&self, points: &[Point], row: &Row) -> io::Result<Vec<u8>> {
+        let lines = objects(points, row)?.into_iter();
+        Ok(lines.flat_map(|line| (line + "\n").into_bytes()).collect())
     }
 }
 

@@ -3,11 +3,14 @@
 //! * [`schedule`] says when: slots on round times, whatever the clocks do.
 //! * [`site`] says what: the lines, the meters on them and where rows go, from a file or a command
 //!   line; [`job`] is one set of points of one meter.
+//! * [`line`](mod@line) reads what is due on one line, and hands on a [`Cycle`] for each row.
 
 pub mod job;
+pub mod line;
 pub mod schedule;
 pub mod site;
 
 pub use job::{Job, Manners, Subject};
+pub use line::{Cycle, Effort, Event, LineLoop, PortError, Spared};
 pub use schedule::{Every, EveryError, Moment, Schedule, Slot};
 pub use site::{Site, SiteError, SiteLine, SiteOutput};

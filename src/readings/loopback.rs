@@ -1,7 +1,7 @@
 //! The loop-back test: a word goes out with function 08 and has to come back, again and again.
 //!
 //! * [`word`] is what goes out at each try.
-//! * [`echo`] finds out first whether the line echoes: the answer to function 08 is its request byte
+//! * [`echo`](super::echo) finds out first whether the line echoes: the answer to function 08 is its request byte
 //!   for byte, so that an echo alone would pass for a meter.
 //! * [`tally`] is what the tries come to, [`verdict`] what that says of the line; both are pure.
 

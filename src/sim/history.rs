@@ -1,7 +1,7 @@
 //! What a [`Load`] has added up to, its demand, and how low and high it has been.
 //!
 //! One week is worked through in steps of three minutes; every other week is the same again. What
-//! has been since something was cleared is in [`since`].
+//! has been since something was cleared is in `since`.
 
 pub(super) mod since;
 

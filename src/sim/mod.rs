@@ -4,12 +4,16 @@
 //! it is answered by the [`Meter`]s on it. What a meter shows comes from its [`Model`]: a
 //! [`Pqm`], a [`Pm290`] or an [`Em2x`], each of which measures a [`Load`].
 //!
+//! Meters take writes as their manuals say: registers hold what was written, and models do what they
+//! are told to, as long as the line is there.
+//!
 //! * [`wave`] and [`load`]: three phases as a pure function of time and a seed. Nothing is stored
-//!   between runs, yet counters only ever rise, and every quantity agrees with the others.
-//! * [`history`]: what has added up since 2020, the demand, the lowest and the highest.
+//!   between runs, yet counters rise until they are cleared, and every quantity agrees with the others.
+//! * [`history`]: what has added up since 2020, the demand, the lowest and the highest; the same since
+//!   something was cleared.
 //! * [`pqm`], [`pm290`] and [`em2x`]: which of this stands behind which point, in whole steps of the
 //!   registers.
-//! * [`model`]: what a kind of meter holds, and how it differs from the others.
+//! * [`model`]: what a kind of meter holds and does, and how it differs from the others.
 //! * [`meter`]: requests in, answers, exceptions or silence out.
 //! * [`kinds`]: which model stands behind which profile.
 //! * [`values`]: a file of values that meters hold whatever the load does.

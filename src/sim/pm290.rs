@@ -22,10 +22,10 @@ use self::scale::{FullScale, lin3};
 use self::writes::Writes;
 use super::history::{Metered, Sums};
 use super::load::{Installation, Load, Quantity, Values};
-use super::model::{Content, Destiny, Measured, Model, Word};
+use super::model::{Content, Deed, Destiny, Measured, Model, Word};
 use super::wave::Moment;
 use super::words::counter;
-use crate::codec::RegisterRange;
+use crate::codec::{ExceptionCode, RegisterRange, Write};
 
 /// A workshop on 230/400 V that draws 55 to 165 A. Its demands are means of the periods in the
 /// setup: 20 minutes of power, 900 seconds of current.
@@ -97,8 +97,16 @@ impl Model for Pm290 {
     fn tell(&mut self, words: &[Word<'_>], now: Timestamp) {
         for word in words {
             self.setup.tell(&word.point.name, word.value);
-            self.writes.tell(word.address, &self.load, now);
+            self.writes.clear(word.address, &self.load, now);
         }
+    }
+
+    fn command(&mut self, write: &Write, now: Timestamp) -> Option<Result<Deed, ExceptionCode>> {
+        let is_restart = writes::is_restart(write);
+        is_restart.then(|| {
+            self.writes.restart(now);
+            Ok(Deed::Done)
+        })
     }
 
     fn measure(&self, now: Timestamp) -> Box<dyn Measured + '_> {

@@ -38,15 +38,14 @@ pub fn carry_out(
 ) -> Vec<Reply> {
     let mut replies: Vec<Reply> = vec![Reply::NotTried; changes];
     for planned in planned {
-        if is_over() {
-            break;
-        }
-        let request = Request::Write(planned.write.clone());
-        info!(
-            "unit {unit}: writing {}",
-            rtu::encode_request(unit, &request)
-        );
-        let result = client.write(unit, &planned.write, patience);
+        let result = if is_over() {
+            Err(Unwritten::Stopped)
+        } else {
+            let request = Request::Write(planned.write.clone());
+            let frame = rtu::encode_request(unit, &request);
+            info!("unit {unit}: writing {frame}");
+            client.write(unit, &planned.write, patience)
+        };
         let result = result.map_err(Arc::new);
         for index in &planned.changes {
             if let Some(reply) = replies.get_mut(*index) {

@@ -3,7 +3,7 @@
 //!
 //! * [`before`](mod@before) reads what is to be written, and what the meter's rules ask for.
 //! * [`carry_out`](mod@carry_out) sends the writes, each once, until one is not confirmed.
-//! * [`check`] reads back what was confirmed.
+//! * [`check`](mod@check) reads back what was confirmed.
 //! * [`fate`] is what became of each change.
 
 pub mod before;

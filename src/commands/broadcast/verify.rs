@@ -48,8 +48,9 @@ pub(super) fn all(
     let limits = profile.map_or_else(Limits::default, |profile| profile.limits.clone());
     let asking = Asking::new(line, profile, &points, limits.read_function());
     let mut code = ExitCode::Done;
-    for unit in units.iter().copied() {
+    for (index, unit) in units.iter().copied().enumerate() {
         if stop.requested().is_some() {
+            report::untried_units(units.len() - index);
             break;
         }
         let taken = asking.ask(unit, client, report);

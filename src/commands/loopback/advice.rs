@@ -1,7 +1,7 @@
 //! What to try when a loop-back test found something.
 
 use crate::client::Failure;
-use crate::commands::report::failure_hint;
+use crate::commands::hints::failure_hint;
 use crate::readings::loopback::{Summary, Verdict};
 
 /// What to try; `last` is why the last try that failed did. Nothing where all is well.

@@ -22,8 +22,9 @@ pub(super) struct Resets {
 const COUNTERS: [&str; 3] = ["counter_1", "counter_2", "counter_3"];
 
 impl Resets {
-    /// Sets to zero what belongs to the point of this name. All meters are the total ones, with those
-    /// of phases and tariffs, and the partial ones: the pages that could be had name no members.
+    /// Sets to zero what belongs to the point of this name. All meters, which are not the hours, are
+    /// taken to be the total ones, with those of phases and tariffs, and the partial ones: which there
+    /// are is on a page that could not be had.
     pub(super) fn reset(&mut self, point: &str, load: &Load, now: Timestamp) {
         let moment = Moment::of(now);
         let energy = || Energy::of(load, moment);

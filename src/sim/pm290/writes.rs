@@ -2,7 +2,7 @@
 
 use jiff::{SignedDuration, Timestamp};
 
-use crate::codec::ExceptionCode;
+use crate::codec::{ExceptionCode, Write};
 use crate::sim::history::{Metered, Sums, since};
 use crate::sim::load::Load;
 use crate::sim::model::{Destiny, Word};
@@ -43,9 +43,7 @@ pub(super) fn destiny(word: &Word<'_>, shown: &dyn Fn(&str) -> Option<u16>) -> D
     let takes = || word.point.takes(&[word.value]).is_ok();
     match (word.address, word.value) {
         (FIRST_DEMAND..=LAST_ENERGY, _) if shown("reset_mode") == Some(FORBIDDEN) => refused,
-        (FIRST_DEMAND..=LAST_DEMAND, _) | (IMPORT..=LAST_ENERGY, 0) | (STATE, RESTART) => {
-            Destiny::Told
-        }
+        (FIRST_DEMAND..=LAST_DEMAND, _) | (IMPORT..=LAST_ENERGY, 0) => Destiny::Told,
         (IMPORT..=LAST_ENERGY, _) => refused,
         // The scales follow from these: the model keeps them.
         _ if super::setup::IS_SCALED_BY.contains(&&*word.point.name) => {
@@ -59,16 +57,29 @@ pub(super) fn destiny(word: &Word<'_>, shown: &dyn Fn(&str) -> Option<u16>) -> D
     }
 }
 
+/// Whether a write restarts the meter: that value in that register alone, which takes no other.
+pub(super) fn is_restart(write: &Write) -> bool {
+    match write {
+        Write::Register { address, value } => (address.get(), *value) == (STATE, RESTART),
+        Write::Registers(block) => (block.start().get(), block.values()) == (STATE, &[RESTART]),
+        Write::Coil { .. } => false,
+    }
+}
+
 impl Writes {
-    /// Does what a word in this register does.
-    pub(super) fn tell(&mut self, address: u16, load: &Load, now: Timestamp) {
+    /// Restarts.
+    pub(super) const fn restart(&mut self, now: Timestamp) {
+        self.restarted = Some(now);
+    }
+
+    /// Clears what a word in this register clears.
+    pub(super) fn clear(&mut self, address: u16, load: &Load, now: Timestamp) {
         let sum = |metered| load.history().sums(load, Moment::of(now)).get(metered);
         match address {
             FIRST_DEMAND..=LAST_DEMAND => self.demands = Some(now),
             // The load gives nothing back: what is exported, between these, is 0 anyhow.
             IMPORT..EXPORT => self.import = sum(Metered::RealPower),
             REACTIVE..=LAST_ENERGY => self.reactive = sum(Metered::ReactivePower),
-            STATE => self.restarted = Some(now),
             _ => {}
         }
     }

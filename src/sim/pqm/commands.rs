@@ -12,10 +12,10 @@ use crate::codec::value::{ByteOrder, Raw, RegisterType, decode};
 use crate::codec::{ExceptionCode, RegisterBlock, Write};
 use crate::sim::model::{Deed, Destiny, Word};
 
-/// The command area and the clock behind it, and the registers that a command can fill.
+/// The command area and the clock behind it. The map names registers to 008C; a message needs more
+/// of them, and none of the longest writes reaches the clock.
 const AREA: RangeInclusive<u16> = 0x0080..=0x00FF;
 const FIRST: u16 = 0x0080;
-const LAST: u16 = 0x008C;
 
 /// What the first of them holds: function 05 is to be carried out.
 const EXECUTE: u16 = 5;
@@ -101,10 +101,8 @@ impl Pqm {
             return None;
         }
         Some(match (start, block.values()) {
-            (FIRST, [EXECUTE, operation, data @ ..]) if end <= u32::from(LAST) + 1 => {
-                self.operate(*operation, data, now)
-            }
-            (FIRST, _) if end <= u32::from(LAST) + 1 => Err(ExceptionCode::ILLEGAL_DATA_VALUE),
+            (FIRST, [EXECUTE, operation, data @ ..]) => self.operate(*operation, data, now),
+            (FIRST, _) => Err(ExceptionCode::ILLEGAL_DATA_VALUE),
             (TIME, [time @ .., month, year]) if time.len() == 2 => {
                 self.set_clock(Some(time), Some(&[*month, *year]), now)
             }
