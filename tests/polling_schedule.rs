@@ -171,7 +171,10 @@ fn stepped(interval: Duration, step: SignedDuration) -> (Vec<Duration>, Vec<Time
             clocks.step(step);
         }
     }
-    let gaps = dues.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let gaps = dues
+        .windows(2)
+        .map(|pair| pair[1].saturating_sub(pair[0]))
+        .collect();
     (gaps, times)
 }
 

@@ -76,8 +76,8 @@ fn site(text: &str) -> Site {
     load("site.toml", text, "etc").unwrap()
 }
 
-fn every(text: &str) -> Option<Every> {
-    Some(Every::new(text.parse::<humantime::Duration>().unwrap().into()).unwrap())
+fn every(text: &str) -> Every {
+    Every::new(text.parse::<humantime::Duration>().unwrap().into()).unwrap()
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn a_site_file_says_what_is_read_where_and_how_often() {
             ("unknown, unit 4".to_owned(), 1, 2),
         ]
     );
-    let intervals: Vec<_> = site.jobs.iter().map(|job| job.every).collect();
+    let intervals: Vec<_> = site.jobs.iter().filter_map(|job| job.every).collect();
     assert_eq!(
         intervals,
         [every("15m"), every("10s"), every("15m"), every("15m")]
