@@ -27,7 +27,7 @@ const LAYERS: [(&str, &[&str]); 16] = [
     ("writing", &["client", "codec", "profile", "readings"]),
     (
         "output",
-        &["append", "codec", "profile", "readings", "words"],
+        &["append", "codec", "polling", "profile", "readings", "words"],
     ),
     ("cli", &[]),
     (
@@ -71,6 +71,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
         &[
             "cli/",
             "client/",
+            "commands/poll/forecast.rs",
             "output/loopback/",
             "output/profile/",
             "polling/schedule.rs",
@@ -88,6 +89,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
         "rustix",
         &[
             "append/system.rs",
+            "commands/poll/screen.rs",
             "transport/lock.rs",
             "transport/pty.rs",
             "transport/pty/",

@@ -78,6 +78,8 @@ pub enum Spared {
 pub enum Event {
     /// A row.
     Cycle(Box<Cycle>),
+    /// The port is open.
+    Open,
     /// The port could not be opened. Each slot it is tried again.
     NoPort(PortError),
     /// Everything that was due has been read.
@@ -157,6 +159,8 @@ impl<'a> LineLoop<'a> {
     /// Reads every set of points in each of its slots, until `stop` says so; the row in hand is
     /// finished first. Sets without an interval are left out.
     pub fn endless(mut self, stop: &dyn Fn() -> bool, deliver: &mut dyn FnMut(Event)) {
+        // At once, and not at the first slot: whoever has started it wants to know.
+        self.open(deliver);
         let start = Moment::of(self.clock);
         let jobs = std::mem::take(&mut self.jobs).into_iter();
         let mut jobs: Vec<(usize, &Job, Schedule)> = jobs
@@ -188,6 +192,23 @@ impl<'a> LineLoop<'a> {
         self.finish();
     }
 
+    /// Opens the port if it was never open; once it was, the client looks for it.
+    fn open(&mut self, deliver: &mut dyn FnMut(Event)) {
+        if self.client.is_some() {
+            return;
+        }
+        match (self.open)() {
+            Ok(client) => {
+                self.client = Some(client);
+                deliver(Event::Open);
+            }
+            Err(error) => {
+                self.away_at = Some(self.clock.now());
+                deliver(Event::NoPort(error));
+            }
+        }
+    }
+
     /// No late answer is left to whoever opens the port next; a port that is lost has none.
     fn finish(self) {
         if let Some(client) = self.client {
@@ -209,18 +230,8 @@ impl<'a> LineLoop<'a> {
         if let Some(reason) = self.reason_to_spare(job, slot, left) {
             return self.spared(index, job, slot, reason);
         }
-        if self.client.is_none() {
-            match (self.open)() {
-                Ok(client) => self.client = Some(client),
-                Err(error) => {
-                    self.away_at = Some(self.clock.now());
-                    deliver(Event::NoPort(error));
-                    return self.spared(index, job, slot, Spared::PortAway);
-                }
-            }
-        }
+        self.open(deliver);
         let patience = self.patience(job, left);
-        // It was opened just now at the latest.
         let Some(client) = self.client.as_mut() else {
             return self.spared(index, job, slot, Spared::PortAway);
         };

@@ -23,6 +23,9 @@ pub enum PathError {
     /// Nothing is there.
     #[error("it is empty")]
     Empty,
+    /// It is no text.
+    #[error("it is not UTF-8")]
+    NotUtf8,
     /// A field that strftime does not have.
     #[error("{0}")]
     Field(String),
