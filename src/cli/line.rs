@@ -52,6 +52,28 @@ pub struct LineArguments {
     pub echo: EchoChoice,
 }
 
+impl LineArguments {
+    /// Which line it is, as it is typed: `-p /dev/ttyUSB0 -b 19200`; what was left out is left out.
+    pub fn typed(&self) -> String {
+        let port = self.port.as_deref().unwrap_or_default();
+        let echo = Some(self.echo).filter(|echo| *echo != EchoChoice::Auto);
+        let options = [
+            self.baud.map(|baud| format!(" -b {baud}")),
+            self.parity.map(|parity| format!(" -P {}", word(&parity))),
+            self.stop_bits.map(|bits| format!(" -s {}", word(&bits))),
+            echo.map(|echo| format!(" --echo {}", word(&echo))),
+        ];
+        let options: String = options.into_iter().flatten().collect();
+        format!("-p {port}{options}")
+    }
+}
+
+/// A choice as it is typed.
+fn word(choice: &impl ValueEnum) -> String {
+    let value = choice.to_possible_value();
+    value.map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
 /// `--parity`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ParityChoice {

@@ -6,10 +6,10 @@ pub(super) mod telling;
 use self::telling::Telling;
 use super::asking::{Asking, units};
 use super::careful::{Consent, Hazard};
-use super::fates::{self, Deed, Outcome};
+use super::fates::{self, Deed};
 use super::open_line::LinePlan;
 use super::report::{self, Report};
-use super::signals::Stop;
+use super::tour::Tour;
 use super::{CommandError, ExitCode, print};
 use crate::cli::ExecuteOperation;
 use crate::client::Client;
@@ -56,20 +56,19 @@ pub(super) fn run(
     let with = with.and_then(|with| profile.point(&with.point));
     asking.setup = Setup::default().with(with.cloned());
     let mut client = line.open()?;
-    let mut task = Task {
+    let task = Task {
         profile: &profile,
         telling: &telling,
         asking: &asking,
-        consent: &consent,
-        stop: None,
-        outcome: Outcome::default(),
     };
-    task.all(&units, &mut client, report);
+    let tour = Tour::new(&units, &consent);
+    let code = tour.all(&mut client, report, |unit, tour, client, report| {
+        task.unit(unit, tour, client, report)
+    });
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
     // lost has none.
     let _ = client.finish();
-    let stopped = task.stop.as_ref().and_then(Stop::requested);
-    Ok(task.outcome.code(stopped))
+    Ok(code)
 }
 
 /// Telling under way.
@@ -77,36 +76,13 @@ struct Task<'a> {
     profile: &'a Profile,
     telling: &'a Telling<'a>,
     asking: &'a Asking<'a>,
-    consent: &'a Consent,
-    /// Listens from the first request on.
-    stop: Option<Stop>,
-    outcome: Outcome,
 }
 
 impl Task<'_> {
-    fn all(&mut self, units: &[Unit], client: &mut Client, report: &mut Report) {
-        for (index, unit) in units.iter().copied().enumerate() {
-            let result = self.unit(unit, client, report);
-            let is_over = result.is_err() || client.is_lost() || self.is_stopped();
-            if let Err(error) = result {
-                // What became of the units before counts as well.
-                self.outcome.add(report.error(&error));
-            }
-            if is_over {
-                report::untried_units(units.len() - index - 1);
-                break;
-            }
-        }
-    }
-
-    fn is_stopped(&self) -> bool {
-        let stop = self.stop.as_ref();
-        stop.is_some_and(|stop| stop.requested().is_some())
-    }
-
     fn unit(
-        &mut self,
+        &self,
         unit: Unit,
+        tour: &mut Tour<'_>,
         client: &mut Client,
         report: &mut Report,
     ) -> Result<(), CommandError> {
@@ -124,13 +100,13 @@ impl Task<'_> {
                 &format!("{place}: {} was not sent", operation.name),
                 failure,
             );
-            self.outcome.add(ExitCode::of(0, &[Fault::from(failure)]));
+            tour.add(ExitCode::of(0, &[Fault::from(failure)]));
             return Ok(());
         }
         let scales = before.map(|before| before.scales).unwrap_or_default();
         let with = operation.only_with.as_ref();
         allowed(&operation.name, "carried out", with, &scales, self.profile)?;
-        if self.is_stopped() {
+        if tour.is_stopped() {
             let text = format!("{} was not sent: the program was stopped", operation.name);
             report::problem(&place, &text);
             return Ok(());
@@ -142,15 +118,12 @@ impl Task<'_> {
             );
             print(shown.as_bytes())?;
         }
-        self.consent.obtain(&place, self.stop.as_ref())?;
-
-        let stop = self.stop.get_or_insert_with(Stop::listen_while_writing);
-        client.stop_when(stop.flag());
+        tour.begin(&place, client)?;
         let planned = [PlannedWrite {
             write: self.telling.write(client.utc_now())?,
             changes: vec![0],
         }];
-        let is_over = || stop.requested().is_some();
+        let is_over = || tour.is_stopped();
         let patience = self.asking.patience;
         let replies = carry_out(client, unit, &planned, 1, patience, &is_over);
         let deed = Deed {
@@ -162,7 +135,7 @@ impl Task<'_> {
         };
         for reply in replies {
             let fate = check::unread(reply);
-            self.outcome.add(fates::tell(&deed, &fate, report));
+            tour.add(fates::tell(&deed, &fate, report));
         }
         Ok(())
     }

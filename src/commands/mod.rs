@@ -25,6 +25,7 @@ mod setpoints;
 mod show_plan;
 mod signals;
 mod simulate;
+mod tour;
 mod trouble;
 mod write_setpoint;
 

@@ -55,6 +55,11 @@ impl<'a> LinePlan<'a> {
         self.arguments.port.as_deref().unwrap_or_default()
     }
 
+    /// The options that were given of it, as they are typed: `-p /dev/ttyUSB0 -b 19200`.
+    pub(super) fn typed(&self) -> String {
+        self.arguments.typed()
+    }
+
     /// How patient to be with a meter of these limits.
     pub(super) fn patience(&self, limits: &Limits) -> Patience {
         manners(self.arguments).patience(limits)

@@ -96,7 +96,7 @@ impl Status<'_> {
                 Ok(_) => Err(Fault::Mismatch),
                 Err(failure) => {
                     let place = format!("unit {unit} on {}, status", self.line.name());
-                    report.failure(&place, &failure);
+                    report.status_failure(&place, &failure);
                     Err(Fault::from(&failure))
                 }
             };

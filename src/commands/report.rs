@@ -114,6 +114,15 @@ impl Report {
         self.hint(failure_hint(failure).map(str::to_owned));
     }
 
+    /// The same of a status: no other function reads it.
+    pub(super) fn status_failure(&mut self, place: &str, failure: &Failure) {
+        if !matches!(failure, Failure::Exception(ExceptionCode::ILLEGAL_FUNCTION)) {
+            return self.failure(place, failure);
+        }
+        say(format_args!("error: {place}: {failure}"));
+        self.advise("the meter does not have function 07");
+    }
+
     /// Prints what was done.
     pub(super) fn success(&self, text: &str) {
         if !self.quiet {

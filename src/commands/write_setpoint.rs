@@ -2,13 +2,13 @@
 
 use super::asking::{Asking, units};
 use super::careful::Consent;
-use super::fates::{self, Deed, Outcome};
+use super::fates::{self, Deed};
 use super::open_line::LinePlan;
 use super::report::{self, Report};
 use super::setpoints::{Job, insisted, typed};
-use super::signals::Stop;
+use super::tour::Tour;
 use super::{CommandError, ExitCode, print};
-use crate::cli::WriteSetpoint;
+use crate::cli::{NumberingChoice, WriteSetpoint};
 use crate::client::Client;
 use crate::codec::{Request, Unit, rtu};
 use crate::output::changes::{Line, table};
@@ -40,20 +40,20 @@ pub(super) fn run(
     let mut asking = Asking::new(&line, profile, &readable, limits.read_function());
     asking.setup = job.setup();
     let mut client = line.open()?;
-    let mut task = Task {
+    let task = Task {
         arguments,
+        line: &line,
         job: &job,
         asking: &asking,
-        consent: &consent,
-        stop: None,
-        outcome: Outcome::default(),
     };
-    task.all(&units, &mut client, report);
+    let tour = Tour::new(&units, &consent);
+    let code = tour.all(&mut client, report, |unit, tour, client, report| {
+        task.unit(unit, tour, client, report)
+    });
     // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
     // lost has none.
     let _ = client.finish();
-    let stopped = task.stop.as_ref().and_then(Stop::requested);
-    Ok(task.outcome.code(stopped))
+    Ok(code)
 }
 
 /// The requests as they would go out, one a line.
@@ -71,42 +71,20 @@ fn frames(units: &[Unit], planned: &[PlannedWrite]) -> String {
 /// Writing under way.
 struct Task<'a> {
     arguments: &'a WriteSetpoint,
+    line: &'a LinePlan<'a>,
     job: &'a Job<'a>,
     asking: &'a Asking<'a>,
-    consent: &'a Consent,
-    /// Listens from the first write on.
-    stop: Option<Stop>,
-    outcome: Outcome,
 }
 
 impl Task<'_> {
-    fn all(&mut self, units: &[Unit], client: &mut Client, report: &mut Report) {
-        for (index, unit) in units.iter().copied().enumerate() {
-            let is_over = self.unit(unit, client, report).unwrap_or_else(|error| {
-                // What became of the units before counts as well.
-                self.outcome.add(report.error(&error));
-                true
-            });
-            let rest = units.len() - index - 1;
-            if is_over || self.is_stopped() {
-                report::untried_units(rest);
-                break;
-            }
-        }
-    }
-
-    fn is_stopped(&self) -> bool {
-        let stop = self.stop.as_ref();
-        stop.is_some_and(|stop| stop.requested().is_some())
-    }
-
-    /// Writes to one unit, and returns whether the port is lost, or the line of no use.
+    /// Writes to one unit.
     fn unit(
-        &mut self,
+        &self,
         unit: Unit,
+        tour: &mut Tour<'_>,
         client: &mut Client,
         report: &mut Report,
-    ) -> Result<bool, CommandError> {
+    ) -> Result<(), CommandError> {
         let place = format!("unit {unit} on {}", self.asking.line);
         let mut memory = self.asking.memory();
         let inquiry = self.asking.inquiry(unit);
@@ -114,8 +92,8 @@ impl Task<'_> {
             Ok(before) => before,
             Err(failure) => {
                 report.failure(&format!("{place}: nothing was written"), &failure);
-                self.outcome.add(ExitCode::of(0, &[Fault::from(&failure)]));
-                return Ok(true);
+                tour.add(ExitCode::of(0, &[Fault::from(&failure)]));
+                return Ok(());
             }
         };
         let ready = self.job.ready(&before.scales).and_then(|ready| {
@@ -127,21 +105,18 @@ impl Task<'_> {
             // What would have told was not read.
             (_, Some(failure)) => {
                 report.failure(&format!("{place}: nothing was written"), failure);
-                self.outcome.add(ExitCode::of(0, &[Fault::from(failure)]));
-                return Ok(before.is_hopeless());
+                tour.add(ExitCode::of(0, &[Fault::from(failure)]));
+                return Ok(());
             }
             (ready, None) => ready?,
         };
-        if self.is_stopped() {
+        if tour.is_stopped() {
             report::problem(&place, "nothing was written: the program was stopped");
-            return Ok(false);
+            return Ok(());
         }
         self.show(&place, &before, &changes, &planned, report)?;
-        self.consent.obtain(&place, self.stop.as_ref())?;
-
-        let stop = self.stop.get_or_insert_with(Stop::listen_while_writing);
-        client.stop_when(stop.flag());
-        let is_over = || stop.requested().is_some();
+        tour.begin(&place, client)?;
+        let is_over = || tour.is_stopped();
         let patience = self.asking.patience;
         let replies = carry_out(client, unit, &planned, changes.len(), patience, &is_over);
         let verified = !self.arguments.no_verify && !is_over();
@@ -157,9 +132,9 @@ impl Task<'_> {
                 done: "written",
                 find_out: find_out.as_deref(),
             };
-            self.outcome.add(fates::tell(&deed, fate, report));
+            tour.add(fates::tell(&deed, fate, report));
         }
-        Ok(client.is_lost())
+        Ok(())
     }
 
     /// Shows what will be written.
@@ -209,18 +184,24 @@ impl Task<'_> {
 
     /// The command that shows what was written; `None` where nothing of it can be read.
     fn find_out(&self, unit: Unit) -> Option<String> {
-        let points = self.asking.points.iter();
-        let names: Vec<&str> = points.map(|point| point.name.as_str()).collect();
+        let typed = self.job.points().zip(&self.arguments.what);
+        let readable = typed.filter(|(point, _)| point.access.readable());
+        // As they were typed: registers by address with their type.
+        let names = readable.filter_map(|(_, what)| Some(what.split_once('=')?.0));
+        let names: Vec<&str> = names.collect();
         if names.is_empty() {
             return None;
         }
-        let port = self.arguments.line.port.as_deref().unwrap_or_default();
+        let line = self.line.typed();
         let meter = self.arguments.meter.as_ref();
-        let meter = meter
-            .map(|meter| format!(" --meter {meter}"))
-            .unwrap_or_default();
+        let meter = meter.map(|meter| format!(" --meter {meter}"));
+        let numbering = match self.arguments.numbering {
+            NumberingChoice::Modicon => " --numbering modicon",
+            NumberingChoice::Protocol => "",
+        };
         Some(format!(
-            "meterpoll read-registers -p {port} -a {unit}{meter} {}",
+            "meterpoll read-registers {line} -a {unit}{}{numbering} {}",
+            meter.unwrap_or_default(),
             names.join(" ")
         ))
     }
@@ -232,11 +213,13 @@ fn figure(change: &Change, scales: &Scales) -> String {
     value.map_or_else(|_| "?".to_owned(), |value| value.to_string())
 }
 
-/// The same with its unit.
+/// The same with its unit, where it is a number.
 fn shown(change: &Change, scales: &Scales) -> String {
+    let value = change.point.interpret(&change.registers, scales);
+    let is_number = value.is_ok_and(|value| value.is_number());
     let figure = figure(change, scales);
     match &change.point.unit {
-        Some(unit) => format!("{figure} {unit}"),
-        None => figure,
+        Some(unit) if is_number => format!("{figure} {unit}"),
+        _ => figure,
     }
 }

@@ -147,15 +147,15 @@ fn assignment(typed: &str, reading: Reading<'_>) -> Result<Assignment, AssignErr
         selector: selector.to_owned(),
     };
     let [point] = <[Point; 1]>::try_from(points).map_err(|_| several())?;
-    if selector.starts_with('@') || selector.contains(['*', '?']) {
-        // Which one it is, is not for a group to say.
+    let is_raw = selector.starts_with(|first: char| first.is_ascii_digit());
+    // Which one it is, is not for a group to say; registers by address have a factor behind a `*`.
+    if !is_raw && (selector.starts_with('@') || selector.contains(['*', '?'])) {
         return Err(several());
     }
     if point.function == Some(ReadFunction::InputRegisters) {
         let name = selector.to_owned();
         return Err(SelectError::ReadOnly { name }.into());
     }
-    let is_raw = selector.starts_with(|first: char| first.is_ascii_digit());
     let known = match reading.profile {
         Some(profile) if is_raw => known(selector, &point, profile)?,
         _ => None,

@@ -100,7 +100,7 @@ fn is_same(point: &Point, found: &Value, wanted: &Value) -> bool {
 
 fn shown(point: &Point, value: &Value) -> String {
     match &point.unit {
-        Some(unit) => format!("{value} {unit}"),
-        None => value.to_string(),
+        Some(unit) if value.is_number() => format!("{value} {unit}"),
+        _ => value.to_string(),
     }
 }
