@@ -25,7 +25,10 @@ use crate::transport::Clock;
 
 /// How long a file is waited for that another program has locked: meanwhile nobody else is written
 /// for.
-const FILE_WAIT: Duration = Duration::from_secs(2);
+const FILE_WAIT: Duration = Duration::from_secs(1);
+
+/// A file that does not take rows is left alone so long before it is tried again.
+const TRY_AGAIN: Duration = Duration::from_secs(2);
 
 /// So many bytes of rows are kept for a file that does not take them.
 const MOST_KEPT: usize = 4 * 1024 * 1024;
@@ -66,6 +69,8 @@ enum Health {
     Failing {
         /// How many bytes were given up since.
         lost: usize,
+        /// When it is tried again.
+        again: Duration,
     },
 }
 
@@ -130,9 +135,16 @@ impl<'a> Outlets<'a> {
     /// over.
     pub(super) fn flush(&mut self, report: &mut Report) {
         for ((_, path), file) in &mut self.files {
+            if let Health::Failing { lost, again } = file.health
+                && self.clock.now() < again
+            {
+                let lost = lost + file.keep_within(MOST_KEPT);
+                file.health = Health::Failing { lost, again };
+                continue;
+            }
             match (file.append(), file.health) {
                 (Ok(()), Health::Good) => {}
-                (Ok(()), Health::Failing { lost }) => {
+                (Ok(()), Health::Failing { lost, .. }) => {
                     file.health = Health::Good;
                     let lost = match lost {
                         0 => String::new(),
@@ -142,14 +154,15 @@ impl<'a> Outlets<'a> {
                 }
                 (Err(error), health) => {
                     let before = match health {
-                        Health::Failing { lost } => lost,
+                        Health::Failing { lost, .. } => lost,
                         Health::Good => {
                             report.error(&CommandError::Append(error));
                             0
                         }
                     };
                     let lost = before + file.keep_within(MOST_KEPT);
-                    file.health = Health::Failing { lost };
+                    let again = self.clock.now().saturating_add(TRY_AGAIN);
+                    file.health = Health::Failing { lost, again };
                 }
             }
         }

@@ -70,6 +70,7 @@ pub(super) struct Run<'a> {
     /// Rows of meters that were not asked, for want of a port and of time.
     untried: (usize, usize),
     flushed: Duration,
+    has_rows: bool,
 }
 
 /// What the threads of all lines share.
@@ -109,6 +110,7 @@ impl<'a> Run<'a> {
             faults: Vec::new(),
             untried: (0, 0),
             flushed: clock.now(),
+            has_rows: false,
         }
     }
 
@@ -235,6 +237,7 @@ impl<'a> Run<'a> {
         let Some(job) = self.site.jobs.get(cycle.job) else {
             return Ok(());
         };
+        self.has_rows = true;
         self.tally.add(cycle);
         self.board.heed(cycle);
         self.delivered += cycle.row.readings.iter().filter(|r| r.is_ok()).count();
@@ -337,9 +340,10 @@ impl<'a> Run<'a> {
             report::untried_rows(late, "the deadline has passed");
         }
         let is_wanted = io::stderr().is_terminal() || log::log_enabled!(log::Level::Info);
-        if course == Course::Endless && is_wanted {
-            let text = summary(self.site, &self.tally);
-            self.report.remark(text.trim_end());
+        if course == Course::Endless && is_wanted && self.has_rows {
+            for line in summary(self.site, &self.tally).lines() {
+                self.report.remark(line);
+            }
         }
     }
 }
