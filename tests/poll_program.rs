@@ -238,23 +238,27 @@ fn rows_are_json_lines_or_influx_when_asked_for() {
 fn a_file_that_does_not_take_rows_is_told_once_and_gets_them_later() {
     let folder = Folder::new("poll_file_comes_back");
     let mut command = Program::new(POLL)
-        .arguments("--every 20ms -q -o log.csv")
+        .arguments("--every 100ms -q -o log.csv")
         .folder(folder.path())
         .command();
     let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-    let mut told = BufReader::new(child.stderr.take().unwrap()).lines();
+    // On a machine that is busy slots may be missed, which is told as well.
+    let told = BufReader::new(child.stderr.take().unwrap()).lines();
+    let mut told = told
+        .map(Result::unwrap)
+        .filter(|line| !line.starts_with("warning"));
     wait_until(|| folder.names() == ["log.csv"]);
     // Others put something else there at once.
     folder.write("other", "a,b\n1,2\n");
     std::fs::rename(folder.file("other"), folder.file("log.csv")).unwrap();
-    let error = told.next().unwrap().unwrap();
+    let error = told.next().unwrap();
     assert!(error.starts_with("error: log.csv: "), "{error}");
     // And away again.
     std::fs::remove_file(folder.file("log.csv")).unwrap();
     wait_until(|| folder.names() == ["log.csv"] && folder.read("log.csv").lines().count() > 3);
     kill(&child, "TERM");
     child.wait().unwrap();
-    assert_eq!(told.next().map(Result::unwrap), None);
+    assert_eq!(told.next(), None);
     let text = without_times(&folder.read("log.csv"));
     let mut lines = text.lines();
     assert_eq!(

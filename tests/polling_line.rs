@@ -259,6 +259,44 @@ fn a_clock_set_back_an_hour_and_forward_a_day_leaves_the_pace_and_is_seen_in_the
     assert_eq!(*rows.borrow(), expected);
 }
 
+/// A clock of which no two looks agree to the microsecond, as on any real machine.
+struct RestlessClock {
+    clock: Arc<FakeClock>,
+    looks: AtomicI64,
+}
+
+impl Clock for RestlessClock {
+    fn now(&self) -> Duration {
+        self.clock.now()
+    }
+
+    fn sleep(&self, time: Duration) {
+        self.clock.sleep(time);
+    }
+
+    fn utc_now(&self) -> Timestamp {
+        let looks = self.looks.fetch_add(7919, Ordering::SeqCst);
+        self.clock.utc_now() - SignedDuration::from_nanos(looks % 50_000)
+    }
+}
+
+#[test]
+fn meters_that_are_due_together_stay_so_and_a_silent_one_goes_last() {
+    let clock = Arc::new(RestlessClock {
+        clock: noon(),
+        looks: AtomicI64::new(0),
+    });
+    let jobs = [
+        job("em24", 1, &["frequency"], seconds(10)),
+        job("pqm", 17, &["frequency"], seconds(10)),
+    ];
+    let mut open = || Ok(switched(&clock, vec![(1, ALWAYS)]));
+    let cycles = polled(&jobs, &*clock, &mut open, seconds(1000));
+    let rows = of(&cycles, 1);
+    assert!(rows.len() >= 99);
+    assert!(rows[2..].iter().all(|cycle| cycle.slot.late < T / 2));
+}
+
 /// The rows of one run over everything.
 fn once(within: Option<Duration>, off: &[u8]) -> (Vec<(Option<Fault>, &'static str)>, Duration) {
     let clock = noon();

@@ -11,7 +11,7 @@ use std::time::Duration;
 use thiserror::Error;
 
 use super::job::Job;
-use super::schedule::{Moment, Schedule, Slot};
+use super::schedule::{Clocks, Moment, Schedule, Slot};
 use crate::client::{Client, Patience};
 use crate::codec::Unit;
 use crate::readings::{Fault, Memory, Row, Trouble, take};
@@ -161,7 +161,8 @@ impl<'a> LineLoop<'a> {
     pub fn endless(mut self, stop: &dyn Fn() -> bool, deliver: &mut dyn FnMut(Event)) {
         // At once, and not at the first slot: whoever has started it wants to know.
         self.open(deliver);
-        let start = Moment::of(self.clock);
+        let mut clocks = Clocks::default();
+        let start = clocks.look(self.clock);
         let jobs = std::mem::take(&mut self.jobs).into_iter();
         let mut jobs: Vec<(usize, &Job, Schedule)> = jobs
             .filter_map(|(index, job)| Some((index, job, Schedule::new(job.every?, start))))
@@ -183,7 +184,7 @@ impl<'a> LineLoop<'a> {
                     is_idle = true;
                 }
                 self.clock.sleep(wait.min(PIECE));
-            } else if let Some(slot) = schedule.take(Moment::of(self.clock)) {
+            } else if let Some(slot) = schedule.take(clocks.look(self.clock)) {
                 let cycle = self.read(*index, job, slot, None, deliver);
                 deliver(Event::Cycle(Box::new(cycle)));
                 is_idle = false;

@@ -16,6 +16,6 @@ pub mod tally;
 pub use job::{Job, Manners, Subject};
 pub use line::{Cycle, Effort, Event, LineLoop, PortError, Spared};
 pub use news::{News, Watch};
-pub use schedule::{Every, EveryError, Moment, Schedule, Slot};
+pub use schedule::{Clocks, Every, EveryError, Moment, Schedule, Slot};
 pub use site::{Site, SiteError, SiteLine, SiteOutput};
 pub use tally::{Counts, Tally};

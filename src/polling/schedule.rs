@@ -84,6 +84,36 @@ impl Moment {
     }
 }
 
+/// Reads both clocks. Two looks at them never agree to the nanosecond, and slots that are due together
+/// are to stay so: as long as they agree to the millisecond, they count as one.
+#[derive(Debug, Clone, Default)]
+pub struct Clocks {
+    /// How far the wall clock is ahead of the monotonic one, in nanoseconds.
+    ahead: Option<i128>,
+}
+
+impl Clocks {
+    /// Less than this is no change.
+    const NOTHING: i128 = 1_000_000;
+
+    /// This moment.
+    pub fn look(&mut self, clock: &dyn Clock) -> Moment {
+        // In this order: where the program is held up in between, slots are late and never early.
+        let utc = clock.utc_now().as_nanosecond();
+        let now = clock.now();
+        let found = utc - signed(now);
+        let ahead = match self.ahead {
+            Some(known) if (known - Self::NOTHING..=known).contains(&found) => known,
+            _ => found,
+        };
+        self.ahead = Some(ahead);
+        Moment {
+            now,
+            utc: timestamp(signed(now) + ahead),
+        }
+    }
+}
+
 /// A slot that is due.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slot {
