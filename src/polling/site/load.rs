@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
 use toml::Spanned;
@@ -70,7 +71,7 @@ struct Loader<'a> {
     source: Source<'a>,
     folder: PathBuf,
     /// Each is loaded once, however many meters are of its kind.
-    profiles: BTreeMap<String, Profile>,
+    profiles: BTreeMap<String, Arc<Profile>>,
 }
 
 /// A meter as far as it can be told without its line.
@@ -79,7 +80,7 @@ struct Placed<'a> {
     /// `meters.main`.
     key: String,
     line: usize,
-    profile: Option<Profile>,
+    profile: Option<Arc<Profile>>,
 }
 
 /// What is read of a meter, at one rate.
@@ -164,7 +165,7 @@ impl Loader<'_> {
         })
     }
 
-    fn profile(&mut self, name: &Spanned<String>, key: &str) -> Result<Profile, SiteError> {
+    fn profile(&mut self, name: &Spanned<String>, key: &str) -> Result<Arc<Profile>, SiteError> {
         let known = self.profiles.get(name.as_ref()).cloned();
         if let Some(profile) = known {
             return Ok(profile);
@@ -173,7 +174,9 @@ impl Loader<'_> {
             let problem = SiteProblem::Find(error);
             self.source.error(name.span(), key, problem)
         })?;
-        self.profiles.insert(name.as_ref().clone(), found.clone());
+        let found = Arc::new(found);
+        let name = name.as_ref().clone();
+        self.profiles.insert(name, Arc::clone(&found));
         Ok(found)
     }
 
@@ -226,7 +229,7 @@ impl Loader<'_> {
         let (source, key) = (&self.source, |key: &str| format!("lines.{name}.{key}"));
         let mut factory: Vec<LineSettings> = Vec::new();
         let profiles = placed.iter().filter(|meter| meter.line == index);
-        for profile in profiles.filter_map(|meter| meter.profile.as_ref()) {
+        for profile in profiles.filter_map(|meter| meter.profile.as_deref()) {
             if !factory.contains(&profile.line) {
                 factory.push(profile.line);
             }
@@ -276,7 +279,7 @@ impl Loader<'_> {
         outputs: &[String],
     ) -> Result<Vec<Job>, SiteError> {
         let Placed { table, key, .. } = meter;
-        let profile = meter.profile.as_ref();
+        let profile = meter.profile.as_deref();
         let units = profile.map_or(UnitRange::Standard, |profile| profile.limits.units);
         let unit = Unit::new(*table.unit.as_ref(), units).map_err(|error| {
             let problem = SiteProblem::Unit(error);
