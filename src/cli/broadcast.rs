@@ -52,7 +52,7 @@ sent; clock=2026-11-22T13:27:10.015 to another one. A time with an offset \
     #[arg(long)]
     pub one_by_one: bool,
     /// How long the meters get to do it before anything else is sent, or the port is left
-    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "200ms")]
+    #[arg(long, value_name = "TIME", value_parser = turnaround, default_value = "200ms")]
     pub turnaround: Duration,
     /// Read these units afterwards and tell which of them hold the values: 17, or 1,2,5-9
     #[arg(long, value_name = "UNITS")]
@@ -63,4 +63,14 @@ sent; clock=2026-11-22T13:27:10.015 to another one. A time with an offset \
     /// The line.
     #[command(flatten)]
     pub line: LineArguments,
+}
+
+/// The longest turnaround: no meter takes a minute to do something.
+const LONGEST_TURNAROUND: Duration = Duration::from_secs(60);
+
+fn turnaround(text: &str) -> Result<Duration, String> {
+    match duration(text)? {
+        time if time > LONGEST_TURNAROUND => Err("the longest turnaround is 1m".to_owned()),
+        time => Ok(time),
+    }
 }

@@ -108,7 +108,6 @@ impl Client {
         asked: &Asked,
         pause: Duration,
     ) -> Result<(), Failure> {
-        let pause = if self.sent { pause } else { Duration::ZERO };
         match self.wait_quiet(pause, asked.patience.timeout)? {
             Quiet::Never { discarded } => return Err(Failure::NeverQuiet { discarded }),
             Quiet::Reached { discarded: 0 } => {}
@@ -121,11 +120,13 @@ impl Client {
     }
 
     /// Waits until the line is silent, at most for `limit`, and no longer once the program is to stop.
+    /// The pause is one between requests.
     pub(super) fn wait_quiet(
         &mut self,
         pause: Duration,
         limit: Duration,
     ) -> Result<Quiet, TransportError> {
+        let pause = if self.sent { pause } else { Duration::ZERO };
         let give_up = self.line.now() + limit;
         let mut thrown_away = 0;
         loop {
@@ -202,6 +203,28 @@ impl Client {
             reply,
             took: took.unwrap_or_else(|| now.saturating_sub(sent)),
         })
+    }
+
+    /// One more answer to what was asked before, which begins within that time; `None` when none does.
+    pub(super) fn overhear(
+        &mut self,
+        asked: &Asked,
+        within: Duration,
+    ) -> Result<Option<Reply>, Failure> {
+        let patience = Patience {
+            timeout: within,
+            ..asked.patience
+        };
+        let asked = Asked {
+            patience,
+            ..asked.clone()
+        };
+        let now = self.line.now();
+        match self.listen(&asked, now, &mut Heard::default()) {
+            Ok(reply) => Ok(Some(reply)),
+            Err(End::TimeIsUp) => Ok(None),
+            Err(End::Lost(error)) => Err(error.into()),
+        }
     }
 
     /// Receives until the answer is there. It must begin within the time-out; one that has begun

@@ -7,6 +7,7 @@
 
 use std::time::Duration;
 
+use jiff::Timestamp;
 use log::info;
 use thiserror::Error;
 
@@ -19,6 +20,9 @@ use super::transaction::Client;
 use crate::codec::rtu;
 use crate::codec::{Broadcast, ExceptionCode, Reply, Request, Response, Unit, Write};
 use crate::transport::line::Quiet;
+
+/// The turnaround that is kept whoever wants the program to stop (SL 2.4.1).
+const LEAST_TURNAROUND: Duration = Duration::from_millis(200);
 
 /// What a unit has said to a write that it has taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,11 +90,15 @@ impl Client {
                     Unwritten::Refused(ExceptionCode::SERVER_DEVICE_BUSY)
                 });
             }
-            is_first = false;
             let result = self.exchange(&asked);
             self.count(unit, result.as_ref().err());
-            let reply = result.map_err(Unwritten::Unknown)?.reply;
+            let mut reply = result.map_err(Unwritten::Unknown)?.reply;
             self.take(unit, &asked.frame, &reply);
+            if !is_first && reply.exception() == Some(ExceptionCode::SERVER_DEVICE_BUSY) {
+                let later = self.hear_out(&asked).map_err(Unwritten::Unknown)?;
+                reply = later.unwrap_or(reply);
+            }
+            is_first = false;
             let code = match reply {
                 Reply::Normal(response) => return Ok(confirmation(write, &response)),
                 Reply::Exception { code, .. } => code,
@@ -118,50 +126,67 @@ impl Client {
         }
     }
 
+    /// Listens for an answer behind one that says that the unit is busy, for the time-out: a second copy
+    /// of the one before, as a repeater makes them, says so too while the write is carried out.
+    fn hear_out(&mut self, asked: &Asked) -> Result<Option<Reply>, Failure> {
+        let until = self.line.now() + asked.patience.timeout;
+        loop {
+            let left = until.saturating_sub(self.line.now());
+            let Some(reply) = self.overhear(asked, left)? else {
+                return Ok(None);
+            };
+            self.take(asked.unit, &asked.frame, &reply);
+            if reply.exception() != Some(ExceptionCode::SERVER_DEVICE_BUSY) {
+                return Ok(Some(reply));
+            }
+        }
+    }
+
     /// Sends a write to all units at once, and lets `turnaround` pass, in which they carry it out and
-    /// say nothing (SL 2.4.1: usually 100 to 200 ms). It is never repeated.
+    /// say nothing (SL 2.4.1: usually 100 to 200 ms); not all of it once the program is to stop. It is
+    /// never repeated. `make` makes it as it is right at the time when it will have left the line, which
+    /// is returned.
     ///
     /// # Errors
     /// [`Unwritten`], of which no unit can be the cause.
     pub fn broadcast(
         &mut self,
-        write: &Write,
+        make: &dyn Fn(Timestamp) -> Write,
         turnaround: Duration,
         patience: Patience,
-    ) -> Result<(), Unwritten> {
+    ) -> Result<Timestamp, Unwritten> {
         self.regain(patience).map_err(Unwritten::NotSent)?;
         // Whoever is late would be talked over, and would not hear it.
         self.settle(Next::Nothing).map_err(Unwritten::NotSent)?;
-        let pause = if self.sent {
-            patience.pause
-        } else {
-            Duration::ZERO
-        };
-        let quiet = self.wait_quiet(pause, patience.timeout);
-        match quiet.map_err(|lost| Unwritten::NotSent(lost.into()))? {
-            Quiet::Reached { .. } => {}
-            Quiet::Never { discarded } => {
+        match self.wait_quiet(patience.pause, patience.timeout) {
+            Ok(Quiet::Reached { .. }) => {}
+            Ok(Quiet::Never { discarded }) => {
                 return Err(Unwritten::NotSent(Failure::NeverQuiet { discarded }));
             }
+            Err(lost) => return Err(Unwritten::NotSent(lost.into())),
         }
         if self.is_stopping() {
             return Err(Unwritten::Stopped);
         }
-        let frame = rtu::encode_broadcast(Broadcast, write);
+        let frame = |time| rtu::encode_broadcast(Broadcast, &make(time));
+        let length = frame(self.utc_now()).as_bytes().len();
+        let left_at = self.utc_now() + self.line.timing().transfer_time(length);
         let unknown = |lost| Unwritten::Unknown(Failure::Port(lost));
-        let sent = self.line.send(frame.as_bytes()).map_err(unknown)?;
+        let sent = self.line.send(frame(left_at).as_bytes()).map_err(unknown)?;
         self.sent = true;
-        let until = sent + turnaround;
+        let (least, until) = (sent + LEAST_TURNAROUND.min(turnaround), sent + turnaround);
         let mut heard = Vec::new();
         loop {
-            let left = until.saturating_sub(self.line.now());
+            let now = self.line.now();
+            let until = if self.is_stopping() { least } else { until };
+            let left = until.saturating_sub(now);
             if left.is_zero() {
-                break;
+                return Ok(left_at);
             }
-            self.line.receive_into(&mut heard, left).map_err(unknown)?;
+            let wait = self.piece_of(left);
+            self.line.receive_into(&mut heard, wait).map_err(unknown)?;
             heard.clear();
         }
-        Ok(())
     }
 }
 

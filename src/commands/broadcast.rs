@@ -4,6 +4,8 @@ mod clock;
 mod message;
 mod verify;
 
+use jiff::Timestamp;
+
 use super::asking::units;
 use super::careful::Consent;
 use super::open_line::LinePlan;
@@ -11,11 +13,11 @@ use super::report::{self, Report};
 use super::signals::Stop;
 use super::{CommandError, ExitCode, print};
 use crate::cli::BroadcastWrite;
-use crate::client::{Client, Unwritten};
+use crate::client::{Client, Patience, Unwritten};
 use crate::codec::{Broadcast, Unit, rtu};
 use crate::profile::{Limits, find};
 use crate::readings::Fault;
-use crate::transport::{Clock, SystemClock, Timing};
+use crate::transport::{Clock, SystemClock};
 
 use self::message::Message;
 use self::verify::Sent;
@@ -31,7 +33,7 @@ pub(super) fn run(
     let limits = profile.map_or_else(Limits::default, |profile| profile.limits.clone());
     let typed = arguments.verify_units.as_ref();
     let units: Vec<Unit> = typed.map_or(Ok(Vec::new()), |typed| units(typed, &limits))?;
-    if !units.is_empty() && message.shown().is_empty() {
+    if !units.is_empty() && message.shown.is_empty() {
         return Err(CommandError::NoEffect {
             option: "--verify-units",
             what: "points that can be read",
@@ -45,83 +47,86 @@ pub(super) fn run(
         });
         return print(frames.collect::<String>().as_bytes());
     }
-    let consent = Consent::of(message.hazards(), arguments.care)?;
+    let consent = Consent::of(message.hazards.clone(), arguments.care)?;
     let line = LinePlan::new(&arguments.line, profile);
     let mut client = line.open()?;
     let place = format!("all meters on {}", line.name());
     if !report.is_quiet() {
         print(format!("# {place}\n{}", message.shown_first()).as_bytes())?;
     }
-    let mut code = ExitCode::Done;
-    let result = consent.obtain(&place, None).and_then(|()| {
+    for warning in message.warnings() {
+        report::warning(&warning);
+    }
+    let result = consent.obtain(&place, None).map(|()| {
         let stop = Stop::listen_while_writing();
         client.stop_when(stop.flag());
-        code = send(arguments, &message, &line, &limits, &mut client, report)?;
-        let sent = Sent {
-            message: &message,
-            at: client.utc_now(),
-            line: &line,
-            profile,
+        let patience = line.patience(&limits);
+        let code = match send(arguments, &message, &place, patience, &mut client, report) {
+            Ok(at) if !units.is_empty() => {
+                let sent = Sent {
+                    message: &message,
+                    at,
+                    line: &line,
+                    profile,
+                };
+                verify::all(&sent, &units, &mut client, &stop, report)
+            }
+            Ok(_) => ExitCode::Done,
+            Err(code) => code,
         };
-        if code == ExitCode::Done && !units.is_empty() {
-            code = verify::all(&sent, &units, &mut client, &stop, report);
+        match stop.requested() {
+            Some(stopped) if code != ExitCode::WriteUnknown => stopped,
+            _ => code,
         }
-        if code != ExitCode::WriteUnknown
-            && let Some(stopped) = stop.requested()
-        {
-            code = stopped;
-        }
-        Ok(())
     });
+    // Whatever became of it, no late answer is left to whoever opens the port next; a port that is
+    // lost has none.
     let _ = client.finish();
-    result.map(|()| code)
+    result
 }
 
-/// Sends the requests, each once.
+/// Sends the requests, each once, and returns when the first of them had left.
+///
+/// # Errors
+/// What to end with, when one was not sent.
 fn send(
     arguments: &BroadcastWrite,
     message: &Message<'_>,
-    line: &LinePlan<'_>,
-    limits: &Limits,
+    place: &str,
+    patience: Patience,
     client: &mut Client,
     report: &mut Report,
-) -> Result<ExitCode, CommandError> {
-    let place = format!("all meters on {}", line.name());
-    let timing = Timing::Paced(line.settings);
-    let count = message.writes(client.utc_now())?.len();
+) -> Result<Timestamp, ExitCode> {
+    let count = message.requests();
+    let mut first = None;
     for index in 0..count {
-        // A clock is right when the last byte has arrived: so much later than now.
-        let frame = |write: &_| rtu::encode_broadcast(Broadcast, write).as_bytes().len();
-        let length = message.writes(client.utc_now())?.get(index).map(frame);
-        let on_its_way = timing.silence() + timing.transfer_time(length.unwrap_or_default());
-        let writes = message.writes(client.utc_now() + on_its_way)?;
-        let Some(write) = writes.get(index) else {
-            break;
-        };
-        let patience = line.patience(limits);
+        let make = |time| message.write(index, time);
         let not_sent = match index {
             0 => format!("{place}: not sent"),
-            _ => format!("{place}: request {} of {count} not sent", index + 1),
+            _ => format!(
+                "{place}: request {} of {count} not sent, those before it were",
+                index + 1
+            ),
         };
-        match client.broadcast(write, arguments.turnaround, patience) {
-            // Nobody answers a broadcast, so nobody refuses it.
-            Ok(()) | Err(Unwritten::Refused(_)) => {}
+        match client.broadcast(&make, arguments.turnaround, patience) {
+            Ok(at) => first = first.or(Some(at)),
             Err(Unwritten::Unknown(failure)) => {
                 report::unknown(&format!("{place}: outcome unknown"), &failure);
                 report.advise("read each meter to see what it holds; nothing is sent again");
-                return Ok(ExitCode::WriteUnknown);
+                return Err(ExitCode::WriteUnknown);
             }
             Err(Unwritten::NotSent(failure)) => {
                 report.failure(&not_sent, &failure);
-                return Ok(ExitCode::of(0, &[Fault::from(&failure)]));
+                return Err(ExitCode::of(0, &[Fault::from(&failure)]));
             }
-            Err(Unwritten::Stopped) => {
+            // Nobody answers a broadcast, so nobody refuses it.
+            Err(Unwritten::Stopped | Unwritten::Refused(_)) => {
                 report::problem(&not_sent, "the program was stopped");
                 // Whatever stopped it says what to end with.
-                return Ok(ExitCode::Terminated);
+                return Err(ExitCode::Done);
             }
         }
     }
     report.success(&format!("sent to {place}"));
-    Ok(ExitCode::Done)
+    Ok(first.unwrap_or_else(|| client.utc_now()))
 }

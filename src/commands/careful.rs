@@ -80,7 +80,9 @@ fn ask(hazards: &[Hazard], whom: &str) -> Result<(), CommandError> {
         // The message after this begins on a line of its own.
         let _ = writeln!(terminal);
     }
-    Err(CommandError::Declined)
+    Err(CommandError::Declined {
+        place: whom.to_owned(),
+    })
 }
 
 /// Profiles are files of somebody.

@@ -43,8 +43,13 @@ pub enum CommandError {
     #[error(transparent)]
     WritePlan(#[from] WritePlanError),
     /// The meter does not take it as it is now.
-    #[error("{0}; nothing was sent")]
-    NotNow(#[from] NotNow),
+    #[error("{place}: {problem}; nothing was sent there")]
+    NotNow {
+        /// The unit.
+        place: String,
+        /// What forbids it.
+        problem: NotNow,
+    },
     /// What changes how the meter is reached, before something else that is written.
     #[error("{name} changes how the meter is reached, and {after} is to be written after it")]
     MovesFirst {
@@ -52,6 +57,12 @@ pub enum CommandError {
         name: String,
         /// What comes behind it.
         after: String,
+    },
+    /// One address for several meters.
+    #[error("{name} would give several meters one address")]
+    OneAddress {
+        /// The point.
+        name: String,
     },
     /// A request that follows from the setup of a meter.
     #[error("{name} is scaled by what the meter is set up for, which nothing tells unread")]
@@ -68,8 +79,11 @@ pub enum CommandError {
         hazard: String,
     },
     /// Somebody was asked and did not say yes.
-    #[error("not confirmed; nothing was sent")]
-    Declined,
+    #[error("{place}: not confirmed, so nothing was sent there")]
+    Declined {
+        /// Who it was to be done to.
+        place: String,
+    },
     /// A meter of whose operations nothing is known.
     #[error("the profile of {meter} has no operations")]
     NoOperations {
@@ -158,6 +172,12 @@ pub enum CommandError {
     NoClock {
         /// The meter.
         meter: String,
+    },
+    /// This computer does not tell where it is.
+    #[error("this computer's time zone is not known: {problem}")]
+    NoTimeZone {
+        /// What is wrong.
+        problem: String,
     },
     /// Something that is no time.
     #[error("'{found}' is no time to set a clock to")]

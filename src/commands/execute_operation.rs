@@ -5,7 +5,7 @@ pub(super) mod telling;
 
 use self::telling::Telling;
 use super::asking::{Asking, units};
-use super::careful::{Consent, Hazard};
+use super::careful::Consent;
 use super::fates::{self, Deed};
 use super::open_line::LinePlan;
 use super::report::{self, Report};
@@ -15,6 +15,7 @@ use crate::cli::ExecuteOperation;
 use crate::client::Client;
 use crate::codec::{Request, Unit, rtu};
 use crate::profile::write_plan::PlannedWrite;
+use crate::profile::writing::Broadcasting;
 use crate::profile::{Profile, Setup, find};
 use crate::readings::Fault;
 use crate::transport::{Clock, SystemClock};
@@ -36,6 +37,10 @@ pub(super) fn run(
         arguments.value.as_deref(),
         arguments.function,
     )?;
+    if telling.operation.broadcast == Broadcasting::Only {
+        let name = telling.operation.name.clone();
+        return Err(CommandError::BroadcastOnly { name });
+    }
     let units = units(unit, &profile.limits)?;
     let line = LinePlan::new(&arguments.line, Some(&profile));
     if arguments.care.dry_run {
@@ -46,11 +51,8 @@ pub(super) fn run(
         let lines: String = frames.map(|frame| frame.to_string() + "\n").collect();
         return print(lines.as_bytes());
     }
-    let hazard = telling.operation.hazard.clone().map(|what| Hazard {
-        name: telling.operation.name.clone(),
-        what,
-    });
-    let consent = Consent::of(hazard.into_iter().collect(), arguments.care)?;
+    let hazards = telling.hazard().into_iter().collect();
+    let consent = Consent::of(hazards, arguments.care)?;
     let mut asking = Asking::new(&line, Some(&profile), &[], profile.limits.read_function());
     let with = telling.operation.only_with.as_ref();
     let with = with.and_then(|with| profile.point(&with.point));
@@ -105,7 +107,11 @@ impl Task<'_> {
         }
         let scales = before.map(|before| before.scales).unwrap_or_default();
         let with = operation.only_with.as_ref();
-        allowed(&operation.name, "carried out", with, &scales, self.profile)?;
+        let allowed = allowed(&operation.name, "carried out", with, &scales, self.profile);
+        allowed.map_err(|problem| CommandError::NotNow {
+            place: place.clone(),
+            problem,
+        })?;
         if tour.is_stopped() {
             let text = format!("{} was not sent: the program was stopped", operation.name);
             report::problem(&place, &text);

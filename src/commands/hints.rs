@@ -58,6 +58,8 @@ pub(super) fn hint(error: &CommandError) -> Option<String> {
             "--force sends it all the same; --verify-units shows which meters have taken it"
         }
         CommandError::BroadcastOnly { .. } => "`meterpoll broadcast` writes it",
+        CommandError::NoTimeZone { .. } => "set the variable TZ, to Europe/Berlin say",
+        CommandError::OneAddress { .. } => "give each meter its own, in calls of their own",
         CommandError::NoMoment { .. } => {
             "give now, or a date and time such as 2026-11-22T13:27:10.015"
         }

@@ -13,44 +13,50 @@ use super::CommandError;
 pub(super) const NOW: &str = "now";
 
 /// A time to set a clock to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Moment {
-    /// The one at which it is sent.
-    Now,
+    /// The one at which it is sent, in this zone.
+    Now(TimeZone),
     /// Another one, local time.
     At(DateTime),
 }
 
 impl Moment {
-    /// `now`, a local date and time, or one with an offset, which becomes local time.
+    /// `now`, a local date and time, or one with an offset or a zone, which becomes local time.
     ///
     /// # Errors
-    /// [`CommandError::NoMoment`] for anything else.
+    /// [`CommandError::NoMoment`] for anything else, [`CommandError::NoTimeZone`] when this computer
+    /// does not tell where it is.
     pub(super) fn parse(text: &str) -> Result<Self, CommandError> {
         let text = text.trim();
         if text == NOW {
-            return Ok(Self::Now);
+            return Self::now();
         }
-        let local = || -> Option<DateTime> {
-            if let Ok(zoned) = text.parse::<Zoned>() {
-                return Some(at(zoned.timestamp()));
-            }
-            match text.parse::<Timestamp>() {
-                Ok(instant) => Some(at(instant)),
-                // Without a time of day it would be midnight, which nobody has said.
-                Err(_) if !text.contains(':') => None,
-                Err(_) => text.parse().ok(),
-            }
-        };
-        local().map(Self::At).ok_or_else(|| CommandError::NoMoment {
+        let instant = text.parse::<Zoned>().map(|zoned| zoned.timestamp());
+        if let Ok(instant) = instant.or_else(|_| text.parse::<Timestamp>()) {
+            return Ok(Self::At(instant.to_zoned(zone()?).datetime()));
+        }
+        // Without a time of day it would be midnight, which nobody has said; a zone that is not known
+        // is not to be passed over.
+        let is_local = text.contains(':') && !text.contains('[');
+        let local = text.parse::<DateTime>().ok().filter(|_| is_local);
+        local.map(Self::At).ok_or_else(|| CommandError::NoMoment {
             found: text.to_owned(),
         })
     }
 
+    /// The present.
+    ///
+    /// # Errors
+    /// [`CommandError::NoTimeZone`].
+    pub(super) fn now() -> Result<Self, CommandError> {
+        Ok(Self::Now(zone()?))
+    }
+
     /// The local time that a clock shows at `now` when it was set to this moment so long before.
-    pub(super) fn civil(self, now: Timestamp, since: Duration) -> DateTime {
+    pub(super) fn civil(&self, now: Timestamp, since: Duration) -> DateTime {
         match self {
-            Self::Now => at(now),
+            Self::Now(zone) => now.to_zoned(zone.clone()).datetime(),
             Self::At(moment) => moment.saturating_add(since),
         }
     }
@@ -59,12 +65,15 @@ impl Moment {
 impl fmt::Display for Moment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Now => f.write_str("this computer's local time"),
+            Self::Now(_) => f.write_str("this computer's local time"),
             Self::At(moment) => write!(f, "{} {:.3}", moment.date(), moment.time()),
         }
     }
 }
 
-fn at(instant: Timestamp) -> DateTime {
-    instant.to_zoned(TimeZone::system()).datetime()
+/// Where this computer is.
+fn zone() -> Result<TimeZone, CommandError> {
+    TimeZone::try_system().map_err(|error| CommandError::NoTimeZone {
+        problem: error.to_string(),
+    })
 }

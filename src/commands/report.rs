@@ -218,11 +218,11 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::Select(_)
         | CommandError::Assign(_)
         | CommandError::WritePlan(_)
-        | CommandError::NotNow(_)
+        | CommandError::NotNow { .. }
         | CommandError::MovesFirst { .. }
         | CommandError::NeedsMeter { .. }
         | CommandError::NeedsYes { .. }
-        | CommandError::Declined
+        | CommandError::Declined { .. }
         | CommandError::NoOperations { .. }
         | CommandError::NoOperation { .. }
         | CommandError::TakesNothing { .. }
@@ -237,6 +237,8 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::BroadcastOnly { .. }
         | CommandError::NoClock { .. }
         | CommandError::NoMoment { .. }
+        | CommandError::NoTimeZone { .. }
+        | CommandError::OneAddress { .. }
         | CommandError::ColumnClash { .. }
         | CommandError::Site(_)
         | CommandError::NoInterval { .. }

@@ -4,12 +4,13 @@
 use super::CommandError;
 use super::careful::Hazard;
 use crate::cli::{NumberingChoice, WriteFunctionChoice};
+use crate::codec::value::ByteOrder;
 use crate::profile::assignment::{Assignment, alike, apart, assignments};
 use crate::profile::selector::{Numbering, Purpose, Reading};
-use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, plan};
-use crate::profile::writing::{Broadcasting, Distinct, WriteFunction};
+use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, in_pieces, plan};
+use crate::profile::writing::{Broadcasting, Distinct, Moves, WriteFunction};
 use crate::profile::{Point, Profile, Scales, Setup};
-use crate::writing::before::{allowed, distinct};
+use crate::writing::before::{NotNow, allowed, distinct};
 
 /// What is to be written, the same for every unit.
 pub(super) struct Job<'a> {
@@ -37,16 +38,6 @@ impl<'a> Job<'a> {
             rules,
         };
         apart(&job.assignments)?;
-        let moves = |assignment: &&Assignment| assignment.writing().moves;
-        let mut rest = job.assignments.iter().skip_while(|one| !moves(one));
-        if let Some(moving) = rest.next()
-            && let Some(after) = rest.find(|one| !moves(one))
-        {
-            return Err(CommandError::MovesFirst {
-                name: moving.point.name.clone(),
-                after: after.point.name.clone(),
-            });
-        }
         let mut known = Vec::new();
         for assignment in &job.assignments {
             if job.depends(assignment).is_empty() {
@@ -55,22 +46,50 @@ impl<'a> Job<'a> {
         }
         alike(&known, job.distinct())?;
         if known.len() == job.assignments.len() {
-            plan(&known, &job.rules)?;
+            job.planned(&known)?;
         }
         Ok(job)
     }
 
-    /// The same for units one by one.
+    /// The requests that make the changes. What changes how the meter is reached comes last, and in one
+    /// of them: whatever comes behind would not reach it.
+    fn planned(&self, changes: &[Change]) -> Result<Vec<PlannedWrite>, CommandError> {
+        let planned = plan(changes, &self.rules)?;
+        let name = |write: &PlannedWrite| {
+            let mut members = write.changes.iter().filter_map(|index| changes.get(*index));
+            members.next().map(|change| change.point.name.clone())
+        };
+        if let Some([moving, after, ..]) = planned.get(moving(&planned, changes)..) {
+            return Err(CommandError::MovesFirst {
+                name: name(moving).unwrap_or_default(),
+                after: name(after).unwrap_or_default(),
+            });
+        }
+        Ok(planned)
+    }
+
+    /// The same for so many units one by one.
     ///
     /// # Errors
-    /// [`CommandError::BroadcastOnly`] for what is only broadcast.
-    pub(super) fn one_by_one(self) -> Result<Self, CommandError> {
+    /// [`CommandError::BroadcastOnly`] for what is only broadcast, [`CommandError::OneAddress`] for an
+    /// address of several.
+    pub(super) fn one_by_one(self, units: usize) -> Result<Self, CommandError> {
         let only = |point: &&Point| point.writing().broadcast == Broadcasting::Only;
-        let found = self.points().find(only).map(|point| point.name.clone());
-        match found {
-            Some(name) => Err(CommandError::BroadcastOnly { name }),
-            None => Ok(self),
+        if let Some(name) = self.points().find(only).map(|point| point.name.clone()) {
+            return Err(CommandError::BroadcastOnly { name });
         }
+        match self.address() {
+            Some(name) if units > 1 => Err(CommandError::OneAddress { name }),
+            _ => Ok(self),
+        }
+    }
+
+    /// The point that is the address of a meter.
+    pub(super) fn address(&self) -> Option<String> {
+        let is_address = |point: &&Point| point.writing().moves == Some(Moves::Address);
+        self.points()
+            .find(is_address)
+            .map(|point| point.name.clone())
     }
 
     /// The changes, on a meter that is set up like this, and the requests that make them.
@@ -82,7 +101,8 @@ impl<'a> Job<'a> {
         let changes: Vec<Change> = changes
             .map(|assignment| assignment.change(scales))
             .collect::<Result<_, _>>()?;
-        let planned = plan(&changes, &self.rules)?;
+        alike(&changes, self.distinct())?;
+        let planned = self.planned(&changes)?;
         Ok((changes, planned))
     }
 
@@ -103,17 +123,16 @@ impl<'a> Job<'a> {
     /// Whether the meter takes these changes as it is now.
     ///
     /// # Errors
-    /// [`CommandError::NotNow`] when it does not, or when that is not known.
-    pub(super) fn allowed(&self, changes: &[Change], scales: &Scales) -> Result<(), CommandError> {
+    /// [`NotNow`] when it does not, or when that is not known.
+    pub(super) fn allowed(&self, changes: &[Change], scales: &Scales) -> Result<(), NotNow> {
         let Some(profile) = self.profile else {
             return Ok(());
         };
-        alike(changes, self.distinct())?;
         for change in changes {
             let (name, writing) = (&change.point.name, change.point.writing());
             allowed(name, "written", writing.only_with.as_ref(), scales, profile)?;
         }
-        Ok(distinct(changes, self.distinct(), scales)?)
+        distinct(changes, self.distinct(), scales)
     }
 
     /// What nobody wants to do by accident.
@@ -153,8 +172,8 @@ impl<'a> Job<'a> {
         let with = with.filter_map(|assignment| assignment.writing().only_with.as_ref());
         let with = with.map(|with| with.point.as_str());
         let ruled = self.distinct().iter().filter(|rule| {
-            let mut points = self.points();
-            points.any(|point| rule.points.contains(&point.name))
+            let mut names = self.assignments.iter().map(Assignment::known_as);
+            names.any(|name| rule.points.iter().any(|ruled| ruled == name))
         });
         let ruled = ruled.flat_map(|rule| rule.points.iter().map(String::as_str));
         let besides = with.chain(ruled).filter_map(|name| profile.point(name));
@@ -169,6 +188,35 @@ impl<'a> Job<'a> {
     fn distinct(&self) -> &[Distinct] {
         self.profile.map_or(&[], |profile| &profile.distinct)
     }
+}
+
+/// Where the requests begin that change how the meter is reached; behind all of them where none does.
+pub(super) fn moving(planned: &[PlannedWrite], changes: &[Change]) -> usize {
+    let moves = |index: &usize| {
+        let change = changes.get(*index);
+        change.is_some_and(|change| change.point.writing().moves.is_some())
+    };
+    let moving = |planned: &PlannedWrite| planned.changes.iter().any(moves);
+    planned.iter().position(moving).unwrap_or(planned.len())
+}
+
+/// That points are not written at once, one sentence each.
+pub(super) fn piecemeal(changes: &[Change], planned: &[PlannedWrite]) -> Vec<String> {
+    let pieces = in_pieces(planned, changes.len());
+    let warnings = pieces.into_iter().filter_map(|index| {
+        let change = changes.get(index)?;
+        let order = match change.point.order {
+            ByteOrder::Cdab | ByteOrder::Dcba => "low word first",
+            ByteOrder::Abcd | ByteOrder::Badc => "high word first",
+        };
+        Some(format!(
+            "{} goes in {} requests, {order}, for function 6 writes one register at a time: in \
+             between the meter holds half of it",
+            change.point.name,
+            change.registers.len()
+        ))
+    });
+    warnings.collect()
 }
 
 /// What was typed, as far as it can be checked without a meter.

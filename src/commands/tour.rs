@@ -16,6 +16,8 @@ pub(super) struct Tour<'a> {
     /// it is.
     stop: Option<Stop>,
     outcome: Outcome,
+    /// Nothing can be done to the rest either.
+    is_over: bool,
 }
 
 impl<'a> Tour<'a> {
@@ -26,6 +28,7 @@ impl<'a> Tour<'a> {
             consent,
             stop: None,
             outcome: Outcome::default(),
+            is_over: false,
         }
     }
 
@@ -39,7 +42,7 @@ impl<'a> Tour<'a> {
     ) -> ExitCode {
         for (index, unit) in self.units.iter().copied().enumerate() {
             let result = one(unit, &mut self, client, report);
-            let is_over = result.is_err() || client.is_lost() || self.is_stopped();
+            let is_over = self.is_over || result.is_err() || client.is_lost() || self.is_stopped();
             if let Err(error) = result {
                 // What became of the units before counts as well.
                 self.outcome.add(report.error(&error));
@@ -51,6 +54,11 @@ impl<'a> Tour<'a> {
         }
         let stopped = self.stop.as_ref().and_then(Stop::requested);
         self.outcome.code(stopped)
+    }
+
+    /// Nothing can be done to the units behind this one: the line is of no use.
+    pub(super) const fn end(&mut self) {
+        self.is_over = true;
     }
 
     /// What became of a unit counts.

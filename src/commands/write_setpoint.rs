@@ -5,17 +5,20 @@ use super::careful::Consent;
 use super::fates::{self, Deed};
 use super::open_line::LinePlan;
 use super::report::{self, Report};
-use super::setpoints::{Job, insisted, typed};
+use super::setpoints::{Job, Ready, insisted, moving, piecemeal, typed};
 use super::tour::Tour;
 use super::{CommandError, ExitCode, print};
 use crate::cli::{NumberingChoice, WriteSetpoint};
 use crate::client::Client;
 use crate::codec::{Request, Unit, rtu};
 use crate::output::changes::{Line, table};
-use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, in_pieces};
+use crate::profile::EncodeError;
+use crate::profile::assignment::AssignError;
+use crate::profile::write_plan::{Change, PlannedWrite, WriteRules};
 use crate::profile::{Limits, Scales, find};
 use crate::readings::Fault;
-use crate::writing::{Before, before, carry_out, check};
+use crate::writing::before::NotNow;
+use crate::writing::{Before, Fate, Receipt, before, carry_out, check};
 
 /// Writes what was asked for, unit by unit.
 pub(super) fn run(
@@ -29,7 +32,7 @@ pub(super) fn run(
     let units = units(&arguments.unit, &limits)?;
     let assignments = typed(&arguments.what, arguments.numbering, profile)?;
     let rules = WriteRules::new(profile).insisting(insisted(arguments.function));
-    let job = Job::new(assignments, profile, rules)?.one_by_one()?;
+    let job = Job::new(assignments, profile, rules)?.one_by_one(units.len())?;
     if arguments.care.dry_run {
         let (_, planned) = job.ready_unread()?;
         return print(frames(&units, &planned).as_bytes());
@@ -96,19 +99,19 @@ impl Task<'_> {
                 return Ok(());
             }
         };
-        let ready = self.job.ready(&before.scales).and_then(|ready| {
-            self.job.allowed(&ready.0, &before.scales)?;
-            Ok(ready)
-        });
-        let (changes, planned) = match (ready, before.failure()) {
-            (Ok(ready), _) if !before.is_hopeless() => ready,
-            // What would have told was not read.
-            (_, Some(failure)) => {
+        let (changes, planned) = match self.ready(&place, &before) {
+            Ok(ready) if !before.is_hopeless() => ready,
+            ready => {
+                let Some(failure) = before.failure().filter(|_| !is_known(&ready)) else {
+                    return ready.map(drop);
+                };
                 report.failure(&format!("{place}: nothing was written"), failure);
                 tour.add(ExitCode::of(0, &[Fault::from(failure)]));
+                if before.is_hopeless() {
+                    tour.end();
+                }
                 return Ok(());
             }
-            (ready, None) => ready?,
         };
         if tour.is_stopped() {
             report::problem(&place, "nothing was written: the program was stopped");
@@ -118,10 +121,22 @@ impl Task<'_> {
         tour.begin(&place, client)?;
         let is_over = || tour.is_stopped();
         let patience = self.asking.patience;
-        let replies = carry_out(client, unit, &planned, changes.len(), patience, &is_over);
+        // What is read back is read where the meter is now.
+        let (here, moving) = planned.split_at(moving(&planned, &changes));
+        let receipts = carry_out(client, unit, here, changes.len(), patience, &is_over);
+        let is_confirmed = receipts.iter().all(Receipt::is_no_failure);
         let verified = !self.arguments.no_verify && !is_over();
         let inquiry = verified.then_some((&inquiry, &mut memory));
-        let fates = check(client, &changes, replies, inquiry, &before.scales);
+        let mut fates = check(client, &changes, receipts, inquiry, &before.scales);
+        if is_confirmed && !moving.is_empty() {
+            let receipts = carry_out(client, unit, moving, changes.len(), patience, &is_over);
+            let last = check(client, &changes, receipts, None, &before.scales);
+            for (fate, last) in fates.iter_mut().zip(last) {
+                if matches!(fate, Fate::NotTried) {
+                    *fate = last;
+                }
+            }
+        }
         let find_out = self.find_out(unit);
         for (change, fate) in changes.iter().zip(&fates) {
             let name = &change.point.name;
@@ -135,6 +150,17 @@ impl Task<'_> {
             tour.add(fates::tell(&deed, fate, report));
         }
         Ok(())
+    }
+
+    /// The changes and requests for a unit that holds this, if it takes them.
+    fn ready(&self, place: &str, before: &Before) -> Result<Ready, CommandError> {
+        let ready = self.job.ready(&before.scales)?;
+        let allowed = self.job.allowed(&ready.0, &before.scales);
+        allowed.map_err(|problem| CommandError::NotNow {
+            place: place.to_owned(),
+            problem,
+        })?;
+        Ok(ready)
     }
 
     /// Shows what will be written.
@@ -169,15 +195,8 @@ impl Task<'_> {
                 "{place}: what it holds now could not be read ({failure}); it is written all the same"
             ));
         }
-        for index in in_pieces(planned, changes.len()) {
-            if let Some(change) = changes.get(index) {
-                report::warning(&format!(
-                    "{} goes in {} requests, low word first, for the meter writes one register at a \
-                     time: in between it holds half of it",
-                    change.point.name,
-                    change.registers.len()
-                ));
-            }
+        for warning in piecemeal(changes, planned) {
+            report::warning(&warning);
         }
         Ok(())
     }
@@ -194,7 +213,7 @@ impl Task<'_> {
         }
         let line = self.line.typed();
         let meter = self.arguments.meter.as_ref();
-        let meter = meter.map(|meter| format!(" --meter {meter}"));
+        let meter = meter.map(|meter| format!(" --meter {}", quoted(meter)));
         let numbering = match self.arguments.numbering {
             NumberingChoice::Modicon => " --numbering modicon",
             NumberingChoice::Protocol => "",
@@ -202,8 +221,38 @@ impl Task<'_> {
         Some(format!(
             "meterpoll read-registers {line} -a {unit}{}{numbering} {}",
             meter.unwrap_or_default(),
-            names.join(" ")
+            names
+                .iter()
+                .map(|name| quoted(name))
+                .collect::<Vec<_>>()
+                .join(" ")
         ))
+    }
+}
+
+/// Whether it is refused for a reason that does not lie in what could not be read.
+fn is_known(ready: &Result<Ready, CommandError>) -> bool {
+    match ready {
+        Ok(_)
+        | Err(CommandError::NotNow {
+            problem: NotNow::Unknown { .. },
+            ..
+        }) => false,
+        Err(CommandError::Assign(AssignError::Value { problem, .. })) => !matches!(
+            **problem,
+            EncodeError::NoScale { .. } | EncodeError::MeansNothing { .. }
+        ),
+        Err(_) => true,
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_./:=@,+-".contains(c);
+    if word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
 

@@ -187,7 +187,7 @@ pub fn alike(changes: &[Change], rules: &[Distinct]) -> Result<(), AssignError> 
         let mut given: Vec<(&str, u16)> = Vec::new();
         let under_it = changes
             .iter()
-            .filter(|change| rule.points.contains(&change.point.name));
+            .filter(|change| rule.points.contains(&change.name));
         for change in under_it {
             let [register] = change.registers.as_slice() else {
                 continue;
@@ -210,7 +210,10 @@ pub fn alike(changes: &[Change], rules: &[Distinct]) -> Result<(), AssignError> 
 
 /// The point of the meter that registers by address are.
 fn known(selector: &str, raw: &Point, profile: &Profile) -> Result<Option<Point>, AssignError> {
-    let there = |point: &&Point| point.range.overlaps(raw.range) && !point.alone;
+    // A point that is read alone lies where another one does.
+    let there = |point: &&Point| {
+        point.range.overlaps(raw.range) && (!point.alone || point.range == raw.range)
+    };
     let there: Vec<&Point> = profile.points.iter().filter(there).collect();
     match there.as_slice() {
         [] => Ok(None),
@@ -241,6 +244,11 @@ impl Assignment {
         }
     }
 
+    /// The name of the meter's point: registers by address may be one.
+    pub fn known_as(&self) -> &str {
+        &self.known.as_deref().unwrap_or(&self.point).name
+    }
+
     /// What is to be known before it is written.
     pub fn writing(&self) -> &Writing {
         self.point.writing()
@@ -261,6 +269,7 @@ impl Assignment {
         match rules.takes(&registers) {
             Ok(()) => Ok(Change {
                 point: self.point.clone(),
+                name: self.known_as().to_owned(),
                 registers,
             }),
             Err(problem) => Err(AssignError::NotTaken {

@@ -145,7 +145,7 @@
 //! type = "u16"
 //! access = "write"
 //! momentary = true              # does something when written, keeps nothing
-//! moves = true                  # changes how the meter is reached: its address, its port's setting
+//! moves = "port"                # changes how the meter is reached: its address, its port's setting
 //! hazard = "sets the energy counters to zero"
 //!
 //! [[points]]
@@ -305,7 +305,7 @@ pub struct PointTable {
     pub(super) function: Option<Spanned<u8>>,
     pub(super) hazard: Option<Spanned<String>>,
     pub(super) momentary: Option<Spanned<bool>>,
-    pub(super) moves: Option<Spanned<bool>>,
+    pub(super) moves: Option<Spanned<String>>,
     pub(super) step: Option<Spanned<u16>>,
     pub(super) allowed: Option<Spanned<Vec<Spanned<i64>>>>,
     pub(super) also: Option<Spanned<Vec<Spanned<i64>>>>,

@@ -120,8 +120,14 @@ fn setting(point: &Point, registers: &[u16]) -> Result<Option<i128>, Missing> {
         Raw::Word(word) => word.into(),
         _ => return Ok(None),
     };
+    let also = &point.writing().also;
     match point.limits {
-        Some((lowest, highest)) if !(lowest..=highest).contains(&raw) => Err(Missing::Mismatch),
+        Some((lowest, highest))
+            if !(lowest..=highest).contains(&raw)
+                && !also.iter().any(|number| i128::from(*number) == raw) =>
+        {
+            Err(Missing::Mismatch)
+        }
         _ => Ok(Some(raw)),
     }
 }

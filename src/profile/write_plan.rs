@@ -12,6 +12,8 @@ use crate::codec::{AddressError, FunctionCode, RegisterAddress, RegisterBlock, W
 pub struct Change {
     /// The point.
     pub point: Point,
+    /// The name of the meter's own point there; that of registers by address is their address.
+    pub name: String,
     /// Its registers, in address order.
     pub registers: Vec<u16>,
 }

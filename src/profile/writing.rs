@@ -16,8 +16,8 @@ pub struct Writing {
     pub hazard: Option<String>,
     /// It does something when it is written, and does not keep what was written.
     pub momentary: bool,
-    /// It changes how the meter is reached: its address, or the setting of its port.
-    pub moves: bool,
+    /// It changes how the meter is reached.
+    pub moves: Option<Moves>,
     /// The raw number is a multiple of this; 0 or 1 says nothing.
     pub step: u16,
     /// The only raw numbers it takes, where these are no range.
@@ -38,7 +38,7 @@ pub struct Writing {
 static PLAIN: Writing = Writing {
     hazard: None,
     momentary: false,
-    moves: false,
+    moves: None,
     step: 0,
     allowed: Vec::new(),
     also: Vec::new(),
@@ -64,6 +64,15 @@ impl From<WriteFunction> for FunctionCode {
             WriteFunction::MultipleRegisters => Self::WriteMultipleRegisters,
         }
     }
+}
+
+/// What of it changes when a point changes how the meter is reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Moves {
+    /// Its address, of which no two on a line may be alike.
+    Address,
+    /// The setting of its port.
+    Port,
 }
 
 /// What a profile says of broadcasting a point.

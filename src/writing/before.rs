@@ -6,7 +6,7 @@ use crate::client::{Client, Failure};
 use crate::profile::point::OnlyWith;
 use crate::profile::write_plan::Change;
 use crate::profile::writing::Distinct;
-use crate::profile::{Point, Profile, Scales, Value};
+use crate::profile::{Profile, Scales, Value};
 use crate::readings::{Fault, Inquiry, Memory, Trouble, echo, take};
 
 /// What a unit holds before it is written to.
@@ -16,10 +16,8 @@ pub struct Before {
     pub old: Vec<Result<Value, Fault>>,
     /// What their setup gives to scale with, and what rules ask for.
     pub scales: Scales,
-    /// Those points, and behind them what was read besides.
-    pub points: Vec<Point>,
     /// What went wrong.
-    pub troubles: Vec<Trouble>,
+    troubles: Vec<Trouble>,
 }
 
 impl Before {
@@ -55,7 +53,6 @@ pub fn before(
     let before = Before {
         old: taken.row.readings,
         scales: taken.scales,
-        points: taken.points.into_owned(),
         troubles: taken.troubles,
     };
     if !before.is_hopeless() && !client.knows_echo() {
@@ -146,7 +143,7 @@ pub fn allowed(
 /// Whether none of the changes makes a point hold what another one holds that may not.
 ///
 /// # Errors
-/// [`NotNow::Alike`] names two of them.
+/// [`NotNow::Alike`] names two of them, [`NotNow::Unknown`] one of which that is not known.
 pub fn distinct(changes: &[Change], rules: &[Distinct], scales: &Scales) -> Result<(), NotNow> {
     for (rule, change) in rules
         .iter()
@@ -155,18 +152,29 @@ pub fn distinct(changes: &[Change], rules: &[Distinct], scales: &Scales) -> Resu
         let [register] = change.registers.as_slice() else {
             continue;
         };
-        if !rule.points.contains(&change.point.name) || rule.except.contains(register) {
+        if !rule.points.contains(&change.name) || rule.except.contains(register) {
             continue;
         }
-        let is_written = |name: &&String| changes.iter().any(|change| change.point.name == **name);
-        let holds = |name: &&String| scales.setting(name) == Ok(Some(i128::from(*register)));
-        let mut others = rule.points.iter().filter(|name| !is_written(name));
-        if let Some(other) = others.find(holds) {
-            return Err(NotNow::Alike {
-                name: change.point.name.clone(),
-                other: other.clone(),
-                about: rule.about.clone(),
-            });
+        let is_written = |name: &&String| changes.iter().any(|change| change.name == **name);
+        for other in rule.points.iter().filter(|name| !is_written(name)) {
+            let name = change.name.clone();
+            match scales.setting(other) {
+                Ok(Some(raw)) if raw == i128::from(*register) => {
+                    return Err(NotNow::Alike {
+                        name,
+                        other: other.clone(),
+                        about: rule.about.clone(),
+                    });
+                }
+                Ok(_) => {}
+                Err(_) => {
+                    return Err(NotNow::Unknown {
+                        name,
+                        verb: "written",
+                        point: other.clone(),
+                    });
+                }
+            }
         }
     }
     Ok(())

@@ -10,7 +10,7 @@ use crate::profile::write_plan::PlannedWrite;
 
 /// What came of a change when its writes were sent.
 #[derive(Debug, Clone)]
-pub enum Reply {
+pub enum Receipt {
     /// The meter has confirmed all of them.
     Confirmed,
     /// It has confirmed one with another value than it was sent: this one.
@@ -27,7 +27,7 @@ pub enum Reply {
 
 /// Sends writes to one unit in their order, each once, and tells what came of each of the `changes`
 /// that they make. After the first that is not confirmed none is sent any more, nor when `is_over`
-/// says so.
+/// says so; a value that the meter has put into its own limits is a confirmation all the same.
 pub fn carry_out(
     client: &mut Client,
     unit: Unit,
@@ -35,9 +35,11 @@ pub fn carry_out(
     changes: usize,
     patience: Patience,
     is_over: &dyn Fn() -> bool,
-) -> Vec<Reply> {
-    let mut replies: Vec<Reply> = vec![Reply::NotTried; changes];
-    for planned in planned {
+) -> Vec<Receipt> {
+    let mut replies: Vec<Receipt> = vec![Receipt::NotTried; changes];
+    let mut rest = planned;
+    while let [planned, after @ ..] = rest {
+        rest = after;
         let result = if is_over() {
             Err(Unwritten::Stopped)
         } else {
@@ -52,14 +54,32 @@ pub fn carry_out(
                 *reply = reply.followed_by(&result);
             }
         }
-        if result.is_err() {
-            break;
+        match &result {
+            Ok(Confirmation::Done) => {}
+            // The rest of a point of which one half is wrong would not make it right.
+            Ok(Confirmation::Stored(_)) if !goes_on(planned, after) => {}
+            _ => break,
         }
     }
     replies
 }
 
-impl Reply {
+/// Whether the next write is a part of the same point.
+fn goes_on(planned: &PlannedWrite, after: &[PlannedWrite]) -> bool {
+    let next = after.first();
+    next.is_some_and(|next| {
+        next.changes
+            .iter()
+            .any(|index| planned.changes.contains(index))
+    })
+}
+
+impl Receipt {
+    /// Whether nothing has gone wrong so far.
+    pub const fn is_no_failure(&self) -> bool {
+        matches!(self, Self::Confirmed | Self::Stored(_) | Self::NotTried)
+    }
+
     /// This one, and what came of the next of the change's writes.
     fn followed_by(&self, next: &Result<Confirmation, Arc<Unwritten>>) -> Self {
         match (self, next) {

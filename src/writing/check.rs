@@ -1,6 +1,6 @@
 //! Reading back what was confirmed.
 
-use super::carry_out::Reply;
+use super::carry_out::Receipt;
 use super::fate::{Fate, Unread};
 use crate::client::Client;
 use crate::profile::point::Point;
@@ -13,7 +13,7 @@ use crate::readings::{Inquiry, Memory, take};
 pub fn check(
     client: &mut Client,
     changes: &[Change],
-    replies: Vec<Reply>,
+    replies: Vec<Receipt>,
     inquiry: Option<(&Inquiry<'_, '_>, &mut Memory)>,
     scales: &Scales,
 ) -> Vec<Fate> {
@@ -48,40 +48,39 @@ pub fn check(
     let fates = replies.into_iter().zip(changes).enumerate();
     fates
         .map(|(index, (reply, change))| {
-            let unread = unreadable(&change.point).unwrap_or(Unread::NotAsked);
-            let unread = if is_asked { unread } else { Unread::NotAsked };
+            let unread = match unreadable(&change.point) {
+                Some(unread) if is_asked || unread == Unread::Moved => unread,
+                _ => Unread::NotAsked,
+            };
             match (found(index), reply) {
-                (_, Reply::NotTried) => Fate::NotTried,
-                (_, Reply::Unwritten(why)) => Fate::Unwritten(why),
-                (_, Reply::Torn(why)) => Fate::Torn(why),
+                (_, Receipt::NotTried) => Fate::NotTried,
+                (_, Receipt::Unwritten(why)) => Fate::Unwritten(why),
+                (_, Receipt::Torn(why)) => Fate::Torn(why),
                 (Some(Ok(value)), reply) => {
-                    compared(change, &value, &now, matches!(reply, Reply::Accepted))
+                    compared(change, &value, &now, matches!(reply, Receipt::Accepted))
                 }
-                (_, Reply::Stored(value)) => Fate::Otherwise(stored(change, value, scales)),
-                (_, Reply::Accepted) => Fate::Accepted,
-                (Some(Err(_)), Reply::Confirmed) if change.point.writing().moves => {
-                    Fate::Confirmed(Unread::Moved)
-                }
-                (Some(Err(fault)), Reply::Confirmed) => Fate::Confirmed(Unread::Failed(fault)),
-                (None, Reply::Confirmed) => Fate::Confirmed(unread),
+                (_, Receipt::Stored(value)) => Fate::Otherwise(stored(change, value, scales)),
+                (_, Receipt::Accepted) => Fate::Accepted,
+                (Some(Err(fault)), Receipt::Confirmed) => Fate::Confirmed(Unread::Failed(fault)),
+                (None, Receipt::Confirmed) => Fate::Confirmed(unread),
             }
         })
         .collect()
 }
 
 /// What became of something that leaves nothing to read back.
-pub fn unread(reply: Reply) -> Fate {
+pub fn unread(reply: Receipt) -> Fate {
     match reply {
-        Reply::Confirmed => Fate::Confirmed(Unread::Momentary),
-        Reply::Stored(value) => Fate::Otherwise(format!("0x{value:04X}")),
-        Reply::Accepted => Fate::Accepted,
-        Reply::Unwritten(why) => Fate::Unwritten(why),
-        Reply::Torn(why) => Fate::Torn(why),
-        Reply::NotTried => Fate::NotTried,
+        Receipt::Confirmed => Fate::Confirmed(Unread::Momentary),
+        Receipt::Stored(value) => Fate::Otherwise(format!("0x{value:04X}")),
+        Receipt::Accepted => Fate::Accepted,
+        Receipt::Unwritten(why) => Fate::Unwritten(why),
+        Receipt::Torn(why) => Fate::Torn(why),
+        Receipt::NotTried => Fate::NotTried,
     }
 }
 
-impl Reply {
+impl Receipt {
     /// Whether the meter has taken something.
     const fn has_reached(&self) -> bool {
         matches!(self, Self::Confirmed | Self::Stored(_) | Self::Accepted)
@@ -94,6 +93,8 @@ fn unreadable(point: &Point) -> Option<Unread> {
         Some(Unread::WriteOnly)
     } else if point.writing().momentary {
         Some(Unread::Momentary)
+    } else if point.writing().moves.is_some() {
+        Some(Unread::Moved)
     } else {
         None
     }

@@ -39,11 +39,3 @@ pub enum Unread {
     /// Reading it failed.
     Failed(Fault),
 }
-
-impl Fate {
-    /// Whether all is as it was asked for, as far as anybody wanted to know.
-    pub const fn is_done(&self) -> bool {
-        matches!(self, Self::ReadBack)
-            || matches!(self, Self::Confirmed(unread) if !matches!(unread, Unread::Failed(_)))
-    }
-}

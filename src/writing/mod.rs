@@ -12,6 +12,6 @@ pub mod check;
 pub mod fate;
 
 pub use before::{Before, before};
-pub use carry_out::{Reply, carry_out};
+pub use carry_out::{Receipt, carry_out};
 pub use check::check;
 pub use fate::{Fate, Unread};

@@ -5,22 +5,34 @@ use std::time::Duration;
 use jiff::Timestamp;
 
 use super::clock::ClockSetting;
-use crate::cli::BroadcastWrite;
+use crate::cli::{BroadcastWrite, OperationFunctionChoice, WriteFunctionChoice};
 use crate::codec::Write;
 use crate::commands::CommandError;
 use crate::commands::careful::Hazard;
 use crate::commands::execute_operation::telling::Telling;
-use crate::commands::setpoints::{Job, insisted, typed};
+use crate::commands::setpoints::{Job, insisted, piecemeal, typed};
 use crate::profile::assignment::Assignment;
+use crate::profile::point::OnlyWith;
 use crate::profile::write_plan::{Change, WriteRules};
 use crate::profile::writing::Broadcasting;
 use crate::profile::{Point, Profile};
+
+/// A time at which requests can be made to look at them.
+const LONG_AGO: Timestamp = Timestamp::UNIX_EPOCH;
 
 /// What is broadcast.
 pub(super) struct Message<'a> {
     profile: Option<&'a Profile>,
     rules: WriteRules,
     what: What<'a>,
+    /// The requests as they would have been long ago: their number and their kind are the same always.
+    requests: Vec<Write>,
+    /// What nobody wants to do by accident.
+    pub(super) hazards: Vec<Hazard>,
+    /// The points that show what was written.
+    pub(super) shown: Vec<Point>,
+    /// The names of the points that they show.
+    written: Vec<String>,
 }
 
 enum What<'a> {
@@ -42,19 +54,91 @@ impl<'a> Message<'a> {
         arguments: &BroadcastWrite,
         profile: Option<&'a Profile>,
     ) -> Result<Self, CommandError> {
-        let rules = WriteRules::new(profile)
-            .broadcasting(profile.map(|profile| &profile.limits))
+        let rules = match (arguments.force, arguments.function) {
+            (true, Some(_)) => WriteRules::new(profile),
+            _ => WriteRules::new(profile).broadcasting(profile.map(|profile| &profile.limits)),
+        };
+        let rules = rules
             .insisting(insisted(arguments.function))
             .apart(arguments.one_by_one);
         let what = what(arguments, profile)?;
-        let message = Self {
+        let mut message = Self {
             profile,
             rules,
             what,
+            requests: Vec::new(),
+            hazards: Vec::new(),
+            shown: Vec::new(),
+            written: Vec::new(),
         };
         message.obeyed(arguments.force)?;
-        message.writes(Timestamp::UNIX_EPOCH)?;
+        message.requests = message.writes(LONG_AGO)?;
+        message.hazards = match &message.what {
+            What::Operation(telling) => telling.hazard().into_iter().collect(),
+            What::Values(_) => {
+                let job = message.job(LONG_AGO, Duration::ZERO)?;
+                if let Some(name) = job.address() {
+                    return Err(CommandError::OneAddress { name });
+                }
+                job.hazards()
+            }
+        };
+        let changes = message.changes(LONG_AGO, Duration::ZERO)?;
+        for (point, change) in changes {
+            message.shown.push(point);
+            message.written.push(change.point.name);
+        }
         Ok(message)
+    }
+
+    /// How many requests it takes.
+    pub(super) const fn requests(&self) -> usize {
+        self.requests.len()
+    }
+
+    /// The name of the point that one of [`Self::shown`] shows.
+    pub(super) fn written(&self, index: usize) -> &str {
+        self.written.get(index).map_or("", String::as_str)
+    }
+
+    /// One of the requests, as it is right at `now`.
+    ///
+    /// # Panics
+    /// Never: `index` is below [`Self::requests`].
+    pub(super) fn write(&self, index: usize, now: Timestamp) -> Write {
+        let writes = self.writes(now).ok();
+        let write = writes.and_then(|writes| writes.into_iter().nth(index));
+        // What could be made once can be made always.
+        write.unwrap_or_else(|| self.requests[index].clone())
+    }
+
+    /// What nobody can look at on every meter before it is sent.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let warning = |name: &str, with: Option<&OnlyWith>| {
+            let point = &with?.point;
+            Some(format!(
+                "{name} is taken only while {point} allows it, which is not looked at on every meter"
+            ))
+        };
+        match &self.what {
+            What::Operation(telling) => {
+                let operation = telling.operation;
+                let warning = warning(&operation.name, operation.only_with.as_ref());
+                warning.into_iter().collect()
+            }
+            What::Values(parts) => {
+                let all = parts
+                    .iter()
+                    .flat_map(|part| part.assignments(LONG_AGO, Duration::ZERO));
+                let rules = all
+                    .filter_map(|one| warning(&one.point.name, one.writing().only_with.as_ref()));
+                let ready = self
+                    .job(LONG_AGO, Duration::ZERO)
+                    .and_then(|job| job.ready_unread());
+                let pieces = ready.map(|(changes, planned)| piecemeal(&changes, &planned));
+                rules.chain(pieces.unwrap_or_default()).collect()
+            }
+        }
     }
 
     /// The requests, as they are right at `now`.
@@ -88,16 +172,9 @@ impl<'a> Message<'a> {
         Ok(shown.collect())
     }
 
-    /// The points that show what was written.
-    pub(super) fn shown(&self) -> Vec<Point> {
-        let changes = self
-            .changes(Timestamp::UNIX_EPOCH, Duration::ZERO)
-            .unwrap_or_default();
-        changes.into_iter().map(|(point, _)| point).collect()
-    }
-
     fn showing(&self, point: &Point) -> Option<Point> {
-        if point.writing().momentary {
+        let writing = point.writing();
+        if writing.momentary || writing.moves.is_some() {
             return None;
         }
         if point.access.readable() {
@@ -105,24 +182,6 @@ impl<'a> Message<'a> {
         }
         let name = point.writing().shown_by.as_ref()?;
         self.profile?.point(name).cloned()
-    }
-
-    /// What nobody wants to do by accident.
-    pub(super) fn hazards(&self) -> Vec<Hazard> {
-        match &self.what {
-            What::Operation(telling) => {
-                let operation = telling.operation;
-                let hazard = operation.hazard.clone().map(|what| Hazard {
-                    name: operation.name.clone(),
-                    what,
-                });
-                hazard.into_iter().collect()
-            }
-            What::Values(_) => self
-                .job(Timestamp::UNIX_EPOCH, Duration::ZERO)
-                .map(|job| job.hazards())
-                .unwrap_or_default(),
-        }
     }
 
     /// What will be sent, a line each.
@@ -170,7 +229,7 @@ impl<'a> Message<'a> {
         match &self.what {
             What::Operation(telling) => {
                 let operation = telling.operation;
-                if !limits.broadcast_functions.contains(&telling.function) {
+                if !force && !limits.broadcast_functions.contains(&telling.function) {
                     return Err(CommandError::BroadcastFunction {
                         meter: profile.name.clone(),
                         code: telling.function.get(),
@@ -185,7 +244,7 @@ impl<'a> Message<'a> {
             What::Values(parts) => {
                 let all = parts
                     .iter()
-                    .flat_map(|part| part.assignments(Timestamp::UNIX_EPOCH, Duration::ZERO));
+                    .flat_map(|part| part.assignments(LONG_AGO, Duration::ZERO));
                 let mut held = all.filter(|one| !is_free(one.writing().broadcast));
                 held.next()
                     .map_or(Ok(()), |one| Err(refused(&one.point.name)))
@@ -204,7 +263,20 @@ fn what<'a>(
         if profile.operation(name).is_none() && profile.point(name).is_some() {
             return Err(CommandError::BroadcastRead { name: name.clone() });
         }
-        return Ok(What::Operation(Telling::new(profile, name, None, None)?));
+        let function = match arguments.function {
+            None => None,
+            Some(WriteFunctionChoice::MultipleRegisters) => {
+                Some(OperationFunctionChoice::MultipleRegisters)
+            }
+            Some(WriteFunctionChoice::SingleRegister) => {
+                return Err(CommandError::NoEffect {
+                    option: "--function 6",
+                    what: "points and registers",
+                });
+            }
+        };
+        let telling = Telling::new(profile, name, None, function)?;
+        return Ok(What::Operation(telling));
     }
     if let Some(name) = arguments.what.iter().find(|what| !what.contains('=')) {
         return Err(CommandError::BroadcastRead { name: name.clone() });

@@ -14,6 +14,7 @@ use crate::commands::asking::Asking;
 use crate::commands::open_line::LinePlan;
 use crate::commands::report::{self, Report};
 use crate::commands::signals::Stop;
+use crate::profile::write_plan::Change;
 use crate::profile::{Limits, Point, Profile, Scales, Value};
 
 /// A clock that was set this far from now is right: as much as a meter may lose between hearing and
@@ -44,9 +45,8 @@ pub(super) fn all(
         line,
         profile,
     } = *sent;
-    let points = message.shown();
     let limits = profile.map_or_else(Limits::default, |profile| profile.limits.clone());
-    let asking = Asking::new(line, profile, &points, limits.read_function());
+    let asking = Asking::new(line, profile, &message.shown, limits.read_function());
     let mut code = ExitCode::Done;
     for (index, unit) in units.iter().copied().enumerate() {
         if stop.requested().is_some() {
@@ -54,35 +54,45 @@ pub(super) fn all(
             break;
         }
         let taken = asking.ask(unit, client, report);
-        // What it should hold by now: a clock goes on.
-        let now = client.utc_now();
-        let since = Duration::try_from(now.duration_since(at)).unwrap_or_default();
-        let changes = message.changes(now, since).unwrap_or_default();
-        for ((point, change), reading) in changes.iter().zip(&taken.row.readings) {
-            let place = format!("unit {unit} on {}, {}", asking.line, change.point.name);
-            let wanted = change
-                .point
-                .interpret(&change.registers, &Scales::default());
-            match (reading, wanted) {
-                (Ok(found), Ok(wanted)) if is_same(point, found, &wanted) => {
-                    let name = &change.point.name;
+        let wanted = wanted(message, at, client.utc_now());
+        let readings = message.shown.iter().zip(&taken.row.readings).enumerate();
+        for (index, (point, reading)) in readings {
+            let name = message.written(index);
+            let place = format!("unit {unit} on {}, {name}", asking.line);
+            let mut wanted = wanted
+                .iter()
+                .filter_map(|values| values.get(index)?.as_ref());
+            let problem = match reading {
+                Ok(found) if wanted.any(|wanted| is_same(point, found, wanted)) => {
                     report.success(&format!("unit {unit}: {name} is {}", shown(point, found)));
+                    continue;
                 }
-                (Ok(found), _) => {
-                    report::problem(&place, &format!("was sent, and the meter holds {found}"));
-                    code = ExitCode::WriteUnknown;
-                }
-                (Err(fault), _) => {
-                    report::problem(
-                        &place,
-                        &format!("was sent, and could not be read ({fault})"),
-                    );
-                    code = ExitCode::WriteUnknown;
-                }
-            }
+                Ok(found) => format!("was sent, and the meter holds {}", shown(point, found)),
+                Err(fault) => format!("was sent, and could not be read ({fault})"),
+            };
+            report::problem(&place, &problem);
+            code = ExitCode::WriteUnknown;
         }
     }
     code
+}
+
+/// What the points may show by now: a clock goes on, and may be a little before or behind.
+fn wanted(message: &Message<'_>, sent: Timestamp, now: Timestamp) -> [Vec<Option<Value>>; 3] {
+    let since = Duration::try_from(now.duration_since(sent)).unwrap_or_default();
+    let sooner = since.saturating_sub(CLOCK_TOLERANCE);
+    [since, sooner, since + CLOCK_TOLERANCE].map(|since| {
+        let changes = message.changes(sent + since, since).unwrap_or_default();
+        let value = |change: &Change| {
+            change
+                .point
+                .interpret(&change.registers, &Scales::default())
+        };
+        changes
+            .iter()
+            .map(|(_, change)| value(change).ok())
+            .collect()
+    })
 }
 
 /// Whether a point holds what it should; a clock goes on while it is read.

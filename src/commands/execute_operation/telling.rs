@@ -8,6 +8,7 @@ use crate::cli::OperationFunctionChoice;
 use crate::codec::value::RegisterType;
 use crate::codec::{FunctionCode, RegisterAddress, RegisterBlock, Write};
 use crate::commands::CommandError;
+use crate::commands::careful::Hazard;
 use crate::commands::local_time::{Moment, NOW};
 use crate::profile::assignment::Assignment;
 use crate::profile::selector::alike;
@@ -47,6 +48,13 @@ impl<'a> Telling<'a> {
         // So that a value is refused before anything is opened.
         telling.write(Timestamp::UNIX_EPOCH)?;
         Ok(telling)
+    }
+
+    /// What nobody wants to do by accident.
+    pub(in crate::commands) fn hazard(&self) -> Option<Hazard> {
+        let what = self.operation.hazard.clone()?;
+        let name = self.operation.name.clone();
+        Some(Hazard { name, what })
     }
 
     /// The request, as it is right at `now`.
@@ -89,10 +97,10 @@ fn block(address: RegisterAddress, words: Vec<u16>) -> Result<Write, CommandErro
 
 /// The registers of what goes with an operation; a clock can be set to the present.
 fn encoded(data: &Point, value: &str, now: Timestamp) -> Result<Vec<u16>, CommandError> {
-    let present = || Moment::Now.civil(now, Duration::ZERO);
+    let present = || Moment::now().map(|moment| moment.civil(now, Duration::ZERO));
     let value = match data.kind {
-        RegisterType::Time if value == NOW => format!("{:.3}", present().time()),
-        RegisterType::Date if value == NOW => present().date().to_string(),
+        RegisterType::Time if value == NOW => format!("{:.3}", present()?.time()),
+        RegisterType::Date if value == NOW => present()?.date().to_string(),
         _ => value.to_owned(),
     };
     let assignment = Assignment::new(data.clone(), value);
@@ -124,10 +132,10 @@ fn find<'a>(profile: &'a Profile, name: &str) -> Result<&'a Operation, CommandEr
 /// `14`, `0x0E`.
 fn number(text: &str) -> Option<u16> {
     let hex = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"));
-    match hex {
-        Some(digits) => u16::from_str_radix(digits, 16).ok(),
-        None => text.parse().ok(),
-    }
+    let (digits, radix) = hex.map_or((text, 10), |hex| (hex, 16));
+    let number = u16::from_str_radix(digits, radix).ok();
+    // The conversion would take a sign.
+    number.filter(|_| !digits.starts_with('+'))
 }
 
 /// The function that carries an operation.

@@ -12,7 +12,7 @@ use crate::profile::error::{Problem, ProfileError};
 use crate::profile::format::PointTable;
 use crate::profile::model::Limits;
 use crate::profile::point::{Access, Point};
-use crate::profile::writing::{Broadcasting, WriteFunction, Writing};
+use crate::profile::writing::{Broadcasting, Moves, WriteFunction, Writing};
 
 /// What is to be known before the point of this row is written; `None` where that is nothing. Which
 /// points there are is checked when all of them are known.
@@ -64,7 +64,11 @@ pub(super) fn writing(
     let writing = Writing {
         hazard: hazard(source, row.hazard.as_ref(), &key("hazard"))?,
         momentary: row.momentary.as_ref().is_some_and(|is| *is.as_ref()),
-        moves: row.moves.as_ref().is_some_and(|is| *is.as_ref()),
+        moves: row
+            .moves
+            .as_ref()
+            .map(|what| moves(source, what, &key("moves")))
+            .transpose()?,
         step: row.step.as_ref().map_or(0, |step| *step.as_ref()),
         allowed: numbers.allowed()?,
         also: numbers.also()?,
@@ -112,6 +116,14 @@ pub(super) fn hazard(
             Err(source.value(text, key, "a few words that complete \"this ...\""))
         }
         found => Ok(found.map(|text| text.as_ref().clone())),
+    }
+}
+
+fn moves(source: &Source<'_>, what: &Spanned<String>, key: &str) -> Result<Moves, ProfileError> {
+    match what.as_ref().as_str() {
+        "address" => Ok(Moves::Address),
+        "port" => Ok(Moves::Port),
+        _ => Err(source.value(what, key, "\"address\" or \"port\"")),
     }
 }
 
