@@ -1,13 +1,13 @@
-//! Reads electricity meters over Modbus RTU: in points and units, and never a wrong number.
+//! Reads and writes electricity meters over Modbus RTU: in points and units, and never a wrong number.
 //!
 //! The layers, each importing only those below it:
 //!
 //! ```text
 //! main → commands → cli        what can be typed
 //!                 → output     readings, and what a meter is, to table, CSV, JSON
+//!                   → append   rows to files that others append to as well
 //!                 → polling    when which meter is read, over and over
 //!                 → writing    points written, once, and what became of it
-//!                   → append   rows to files that others append to as well
 //!                 → readings   a read plan carried out: a value or a fault for each point
 //!                 → sim        a simulated meter and its line
 //!                 → client     one request and its one answer; what is believed

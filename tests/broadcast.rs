@@ -164,7 +164,7 @@ fn a_meter_that_has_not_taken_it_is_named() {
         "# all meters on PORT at 115200 8N1\n\
          demand_interval: 5 min\n\
          sent to all meters on PORT at 115200 8N1\n",
-        "error: unit 1 on PORT at 115200 8N1, demand_interval: was sent, and the meter holds 15\n\
+        "error: unit 1 on PORT at 115200 8N1, demand_interval: was sent, and the meter holds 15 min\n\
          error: unit 2 on PORT at 115200 8N1, demand_interval (registers 0x1103+1): no answer within \
          200ms, 3 attempts\n\
          hint: check --unit, --baud, --parity and --stop-bits against the meter, then power and \
@@ -188,4 +188,18 @@ fn a_port_that_is_lost_meanwhile_leaves_the_outcome_unknown() {
     let end = "hint: read each meter to see what it holds; nothing is sent again\n";
     assert!(told.stderr.ends_with(end), "{told:?}");
     assert_eq!(writes(&meter), ["00 06 11 03 00 05"]);
+}
+
+#[test]
+fn a_point_of_two_registers_is_warned_of_where_it_goes_in_two_requests() {
+    let meter = PtyMeter::new(Box::new(|_| Vec::new()));
+    let told = run(meter.path(), "broadcast -q --meter em24 ct_ratio=40.0");
+    came_to(
+        &told,
+        0,
+        "",
+        "warning: ct_ratio goes in 2 requests, low word first, for function 6 writes one register at a \
+         time: in between the meter holds half of it\n",
+    );
+    assert_eq!(writes(&meter), ["00 06 11 2C 01 90", "00 06 11 2D 00 00"]);
 }

@@ -54,7 +54,7 @@ fn a_write_that_is_to_be_sent_is_not() {
     stop.store(true, Ordering::SeqCst);
     let result = bench.client.write(unit(17), &set(1, 2), PATIENT);
     assert!(matches!(result, Err(Unwritten::Stopped)), "{result:?}");
-    let result = bench.client.broadcast(&set(1, 2), ms(200), PATIENT);
+    let result = bench.client.broadcast(&|_| set(1, 2), ms(200), PATIENT);
     assert!(matches!(result, Err(Unwritten::Stopped)), "{result:?}");
     assert_eq!(bench.frames(), 1);
 }
@@ -101,7 +101,7 @@ fn the_turnaround_of_a_broadcast_is_kept_all_the_same() {
     let (mut bench, stop) = bench();
     stopped_at_once(&bench, &stop, Vec::new());
     let start = bench.now();
-    let result = bench.client.broadcast(&set(1, 2), ms(200), PATIENT);
+    let result = bench.client.broadcast(&|_| set(1, 2), ms(200), PATIENT);
     assert!(result.is_ok(), "{result:?}");
     assert!(bench.now().saturating_sub(start) >= ms(200));
 }

@@ -147,7 +147,7 @@ fn a_gateway_whose_unit_is_silent_does_not_know_either() {
 }
 
 #[test]
-fn a_busy_unit_is_written_to_again_after_100_200_and_400_ms() {
+fn a_busy_unit_is_written_to_again_and_heard_out_from_the_second_time_on() {
     let mut bench = known();
     let write = set(0x1028, 500);
     for _ in 0..3 {
@@ -158,7 +158,8 @@ fn a_busy_unit_is_written_to_again_after_100_200_and_400_ms() {
     assert_eq!(outcome(&result), "done");
     let sent = bench.line.sent();
     let silences = sent[2..].iter().map(|sent| sent.silence.as_millis());
-    assert_eq!(silences.collect::<Vec<_>>(), [100, 200, 400]);
+    // A second copy of the first word of it may hide that the write is carried out.
+    assert_eq!(silences.collect::<Vec<_>>(), [100, 1000, 1000]);
     assert!(sent[1..].iter().all(|again| again.frame == sent[1].frame));
     let counters = bench.client.counters(unit(17));
     assert_eq!((counters.busy, counters.retries), (3, 3));
@@ -398,7 +399,7 @@ fn a_broadcast_waits_for_its_turnaround_and_for_nobody() {
         let write = set(0x1028, 500);
         let result = bench
             .client
-            .broadcast(&write, turnaround, Patience::default());
+            .broadcast(&|_| write.clone(), turnaround, Patience::default());
         assert!(result.is_ok());
         let sent = bench.line.sent();
         assert_eq!(sent[1].frame[..6], [0, 6, 0x10, 0x28, 0x01, 0xF4]);
@@ -430,7 +431,9 @@ fn a_broadcast_is_sent_once_whatever_comes_back() {
     ] {
         let mut bench = Bench::new();
         bench.line.answer(vec![(ms(1), came)]);
-        let result = bench.client.broadcast(&write, ms(200), Patience::default());
+        let result = bench
+            .client
+            .broadcast(&|_| write.clone(), ms(200), Patience::default());
         assert!(result.is_ok());
         assert_eq!(bench.frames(), 1);
     }
@@ -444,7 +447,7 @@ fn a_broadcast_waits_for_answers_that_are_owed() {
         ..Patience::default()
     };
     assert!(bench.client.request(unit(17), &read(1, 1), once).is_err());
-    let result = bench.client.broadcast(&set(0x1028, 500), ms(200), once);
+    let result = bench.client.broadcast(&|_| set(0x1028, 500), ms(200), once);
     assert!(result.is_ok());
     let sent = bench.line.sent();
     assert!(sent[2].at >= sent[1].at + ms(2000), "{sent:?}");
@@ -462,7 +465,7 @@ fn a_broadcast_during_which_the_port_is_lost_may_have_been_heard() {
         bench.line.come_back(bench.now() + ms(150));
         let result = bench
             .client
-            .broadcast(&set(0x1028, 500), ms(200), Patience::default());
+            .broadcast(&|_| set(0x1028, 500), ms(200), Patience::default());
         assert!(
             matches!(result, Err(Unwritten::Unknown(Failure::Port(_)))),
             "{result:?}"
@@ -479,7 +482,7 @@ fn nothing_is_broadcast_into_a_line_that_is_never_silent() {
         .inject_endlessly(bench.now(), ms(2), || vec![0x55]);
     let result = bench
         .client
-        .broadcast(&set(0x1028, 500), ms(200), Patience::default());
+        .broadcast(&|_| set(0x1028, 500), ms(200), Patience::default());
     assert!(
         matches!(result, Err(Unwritten::NotSent(Failure::NeverQuiet { .. }))),
         "{result:?}"

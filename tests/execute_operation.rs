@@ -9,6 +9,8 @@ mod support {
     pub(crate) mod writable;
 }
 
+use std::thread;
+
 use support::program::Program;
 use support::pty::PtyMeter;
 use support::simulation::Simulation;
@@ -132,23 +134,29 @@ const HELD: [(u16, u16); 1] = [(0, 65)];
 
 #[test]
 fn an_operation_that_is_not_confirmed_is_not_told_again() {
-    for (answer, found) in [
-        (vec![], "no answer within 200ms"),
+    let other = sealed(&[17, 5, 0, 15, 0xFF, 0]);
+    let cases = [
+        (Vec::new(), "no answer within 200ms"),
         (
-            sealed(&[17, 5, 0, 15, 0xFF, 0]),
+            other,
             "the unit answered something else: an answer to function 05 (Write Single Coil)",
         ),
-    ] {
-        let meter = meter(&HELD, move |_, _| answer.clone());
-        let told = run(meter.path(), COMMAND);
-        let text = format!(
-            "error: unit 17 on PORT at 115200 8N1, clear_energy: outcome unknown, it may be done or \
-             not: {found}\n\
-             hint: it cannot be read back: see what the meter shows before it is done again\n"
-        );
-        came_to(&told, 6, SHOWN, &text);
-        assert_eq!(writes(&meter), ["11 05 00 0E FF 00"]);
-    }
+    ];
+    thread::scope(|scope| {
+        for (answer, found) in cases {
+            scope.spawn(move || {
+                let meter = meter(&HELD, move |_, _| answer.clone());
+                let told = run(meter.path(), COMMAND);
+                let text = format!(
+                    "error: unit 17 on PORT at 115200 8N1, clear_energy: outcome unknown, it may be \
+                     done or not: {found}\n\
+                     hint: it cannot be read back: see what the meter shows before it is done again\n"
+                );
+                came_to(&told, 6, SHOWN, &text);
+                assert_eq!(writes(&meter), ["11 05 00 0E FF 00"]);
+            });
+        }
+    });
 }
 
 #[test]

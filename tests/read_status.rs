@@ -84,7 +84,7 @@ fn a_unit_that_does_not_answer_has_an_empty_row() {
     let meter = meter(0x15, 0);
     let told = run(
         meter.path(),
-        "read-status -a 17,5,18 --meter pqm -f csv --timeout 200ms",
+        "read-status -a 17,5,18 --meter pqm -f csv --timeout 100ms",
     );
     came_to(
         &told,
@@ -94,7 +94,7 @@ fn a_unit_that_does_not_answer_has_an_empty_row() {
          <time>,pqm,17,ok,0x15,1,0,1,0,1,0\n\
          <time>,pqm,5,timeout,,,,,,,\n\
          <time>,pqm,18,ok,0x00,0,0,0,0,0,0\n",
-        "error: unit 5 on PORT at 115200 8N1, status: no answer within 200ms\n\
+        "error: unit 5 on PORT at 115200 8N1, status: no answer within 100ms\n\
          hint: check --unit, --baud, --parity and --stop-bits against the meter, then power and wiring \
          (A and B swapped?); a slow meter needs a longer --timeout\n",
     );

@@ -241,6 +241,7 @@ fn every_option_it_names_is_in_the_help() {
         "write-setpoint",
         "broadcast",
         "execute-operation",
+        "read-status",
         "loopback",
         "poll",
         "simulate",

@@ -9,15 +9,50 @@ mod support {
     pub(crate) mod writable;
 }
 
+use std::path::PathBuf;
+use std::sync::LazyLock;
 use std::thread;
 
 use support::pty::PtyMeter;
-use support::writable::{
-    Registers, Told, behaviour, came_to, meter, obey, refuse, run, sealed, writes,
-};
+use support::writable;
+use support::writable::{Registers, Told, behaviour, came_to, meter, obey, refuse, sealed, writes};
+
+/// A meter that answers soon or never, so that nobody waits long for what may still come.
+const QUICK: &str = r#"
+name = "quick"
+title = "Quick"
+manual = "none"
+
+[limits]
+functions = [3, 6, 16]
+longest_answer = "200ms"
+
+[[points]]
+name = "elsewhere"
+address = 0x0300
+type = "u16"
+"#;
+
+static PROFILE: LazyLock<PathBuf> = LazyLock::new(|| {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("quick.toml");
+    std::fs::write(&path, QUICK).expect("the folder for tests is writable");
+    path
+});
+
+/// Runs a command on that meter, of which nothing else is known: its name and file are left out of
+/// what is said.
+fn run(path: &str, command: &str) -> Told {
+    let profile = format!(" --meter {}", PROFILE.display());
+    let told = writable::run(path, &format!("{command}{profile}"));
+    Told {
+        stdout: told.stdout.replace("# quick unit", "# unit"),
+        stderr: told.stderr.replace(&profile, ""),
+        ..told
+    }
+}
 
 /// Two registers are written with one request each, and read back.
-const COMMAND: &str = "write-setpoint -a 17 --timeout 200ms 0x0010=500 0x0020=600";
+const COMMAND: &str = "write-setpoint -a 17 0x0010=500 0x0020=600";
 
 const HELD: [(u16, u16); 2] = [(0x10, 1), (0x20, 2)];
 
@@ -190,7 +225,7 @@ fn a_meter_that_stays_busy_has_done_nothing() {
 
 #[test]
 fn a_meter_that_is_still_at_work_has_confirmed_nothing() {
-    let command = "write-setpoint -a 17 --timeout 200ms --no-verify 0x0010=500";
+    let command = "write-setpoint -a 17 --no-verify 0x0010=500";
     let meter = meter(&HELD, |frame, _| refuse(frame, 5));
     let told = run(meter.path(), command);
     came_to(
@@ -331,7 +366,7 @@ fn what_is_unknown_of_one_unit_counts_more_than_what_is_known_of_another() {
         18 if frame[1] == 6 => refuse(frame, 2),
         _ => sealed(&[18, 3, 2, 0, 7]),
     }));
-    let command = "write-setpoint -a 17,18 --timeout 200ms 0x0010=500";
+    let command = "write-setpoint -a 17,18 0x0010=500";
     let told = run(meter.path(), command);
     assert_eq!(told.code, Some(6), "{told:?}");
     let lines: Vec<&str> = told.stderr.lines().collect();

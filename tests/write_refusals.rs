@@ -131,25 +131,24 @@ fn unit_0_anywhere_in_a_list() {
     }
 }
 
-/// So many registers from 0x1000 on, each by itself.
-fn registers(count: u16) -> String {
-    let one = |offset: u16| format!(" 0x{:04X}=1", 0x1000 + offset);
-    (0..count).map(one).collect()
+/// So many registers, each by itself.
+fn registers(start: u16, count: u16) -> String {
+    let names: Vec<String> = (start..start + count)
+        .map(|address| format!("0x{address:04X}=1"))
+        .collect();
+    names.join(" ")
 }
 
 #[test]
 fn more_registers_than_a_request_or_the_meter_takes() {
     refused(
-        &format!("write-setpoint -a 17{}", registers(124)),
+        &format!("write-setpoint -a 17 {}", registers(0x1000, 124)),
         "error: 124 registers at once from 0x1000 on, and the standard takes 123\n\
          hint: write them in several calls\n",
     );
     // Somewhere the meter has no points of its own.
-    let unknown: String = (0..61)
-        .map(|at| format!(" 0x{:04X}=1", 0xE000 + at))
-        .collect();
     refused(
-        &format!("write-setpoint -a 17 --meter pqm{unknown}"),
+        &format!("write-setpoint -a 17 --meter pqm {}", registers(0xE000, 61)),
         "error: 61 registers at once from 0xE000 on, and pqm takes 60\n\
          hint: write them in several calls\n",
     );

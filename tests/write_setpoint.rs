@@ -151,8 +151,8 @@ fn what_is_written_is_shown_first_and_held_afterwards() {
          POINT     NOW   NEW  UNIT\n\
          ct_ratio  1.0  40.0\n\
          ct_ratio: 40.0, written and read back\n",
-        "warning: ct_ratio goes in 2 requests, low word first, for the meter writes one register at a \
-         time: in between it holds half of it\n",
+        "warning: ct_ratio goes in 2 requests, low word first, for function 6 writes one register at a \
+         time: in between the meter holds half of it\n",
     );
     let told = run(
         path,

@@ -355,6 +355,9 @@ impl Client {
             self.debts.answered_badly(asked.unit, &asked.frame);
         }
         let received = heard.received.len() + heard.forgotten;
+        if self.is_stopping() && heard.evidence == Evidence::default() && received == 0 {
+            return Failure::Stopped;
+        }
         failure(
             &heard.evidence,
             received.min(MOST_RECEIVED),

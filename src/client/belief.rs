@@ -5,7 +5,7 @@
 
 use crate::codec::length::{self, Direction};
 use crate::codec::rtu::{self, Frame};
-use crate::codec::{Reply, Request, Response, Unit};
+use crate::codec::{Reply, Request, Response, Unit, Write};
 
 /// What to make of our own bytes coming back, as they do where a two-wire adapter keeps its
 /// receiver on.
@@ -277,6 +277,23 @@ impl<'a> Expectation<'a> {
                 (Request::ReturnQueryData(sent), Response::QueryData(found)) => {
                     format!("0x{found:04X}, and 0x{sent:04X} was sent")
                 }
+                (
+                    Request::Write(Write::Register { address, .. }),
+                    Response::Register { address: found, .. },
+                )
+                | (
+                    Request::Write(Write::Coil { address, .. }),
+                    Response::Coil { address: found, .. },
+                ) => format!("{found} written, and {address} was sent"),
+                (Request::Write(Write::Registers(block)), Response::RegistersWritten(found)) => {
+                    format!(
+                        "{}+{} written, and {}+{} was sent",
+                        found.start(),
+                        found.count(),
+                        block.start(),
+                        block.count()
+                    )
+                }
                 (_, response) => format!("an answer to {}", response.function()),
             },
         }
@@ -292,7 +309,6 @@ impl Evidence {
 
 /// Whether the normal answer repeats the request byte for byte.
 pub(super) const fn is_mirrored(request: &Request) -> bool {
-    use crate::codec::Write;
     matches!(
         request,
         Request::ReturnQueryData(_) | Request::Write(Write::Coil { .. } | Write::Register { .. })
@@ -316,7 +332,6 @@ pub fn answer_length(request: &Request) -> usize {
 /// Whether a response is what the request implies, field by field. The value that function 06
 /// answers is the one the meter has stored, which it may have put into its own limits.
 fn matches(request: &Request, response: &Response) -> bool {
-    use crate::codec::Write;
     match (request, response) {
         (
             Request::Read { function, range },

@@ -43,7 +43,7 @@ impl Counters {
     /// One more attempt has failed.
     pub(super) fn fail(&mut self, failure: &Failure) {
         match failure {
-            Failure::Silence { .. } | Failure::OnlyEcho => self.silences += 1,
+            Failure::Silence { .. } | Failure::Stopped | Failure::OnlyEcho => self.silences += 1,
             Failure::Truncated { .. } => self.truncated += 1,
             Failure::Damaged { .. } => self.damaged += 1,
             Failure::Mismatch { .. } => self.mismatched += 1,

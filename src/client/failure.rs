@@ -21,6 +21,9 @@ pub enum Failure {
         /// Bytes that belong to no frame.
         stray: usize,
     },
+    /// The program was stopped before an answer began.
+    #[error("no answer before the program was stopped")]
+    Stopped,
     /// Only the own request came back.
     #[error("nothing but the echo of the own request came back")]
     OnlyEcho,

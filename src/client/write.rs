@@ -65,7 +65,21 @@ impl Client {
         write: &Write,
         patience: Patience,
     ) -> Result<Confirmation, Unwritten> {
-        let asked = Asked::new(unit, Request::Write(write.clone()), patience);
+        self.write_made(unit, &|_| write.clone(), patience)
+    }
+
+    /// The same for a write that depends on the time at which it has left the line: `make` makes it, and
+    /// again each time that the unit was busy.
+    ///
+    /// # Errors
+    /// As [`Self::write`].
+    pub fn write_made(
+        &mut self,
+        unit: Unit,
+        make: &dyn Fn(Timestamp) -> Write,
+        patience: Patience,
+    ) -> Result<Confirmation, Unwritten> {
+        let mut asked = Asked::new(unit, Request::Write(make(self.utc_now())), patience);
         self.regain(patience).map_err(Unwritten::NotSent)?;
         self.settle(Next::Unlike(unit))
             .map_err(Unwritten::NotSent)?;
@@ -90,6 +104,8 @@ impl Client {
                     Unwritten::Refused(ExceptionCode::SERVER_DEVICE_BUSY)
                 });
             }
+            let write = make(self.leaves_at(asked.frame.as_bytes().len()));
+            asked = Asked::new(unit, Request::Write(write.clone()), patience);
             let result = self.exchange(&asked);
             self.count(unit, result.as_ref().err());
             let mut reply = result.map_err(Unwritten::Unknown)?.reply;
@@ -100,7 +116,7 @@ impl Client {
             }
             is_first = false;
             let code = match reply {
-                Reply::Normal(response) => return Ok(confirmation(write, &response)),
+                Reply::Normal(response) => return Ok(confirmation(&write, &response)),
                 Reply::Exception { code, .. } => code,
             };
             match code {
@@ -124,6 +140,11 @@ impl Client {
             pause = pause.max(*wait);
             self.ledger.of(unit).retries += 1;
         }
+    }
+
+    /// When a frame of so many bytes will have left the line that is sent now.
+    fn leaves_at(&self, bytes: usize) -> Timestamp {
+        self.utc_now() + self.line.timing().transfer_time(bytes)
     }
 
     /// Listens for an answer behind one that says that the unit is busy, for the time-out: a second copy
@@ -169,8 +190,8 @@ impl Client {
             return Err(Unwritten::Stopped);
         }
         let frame = |time| rtu::encode_broadcast(Broadcast, &make(time));
-        let length = frame(self.utc_now()).as_bytes().len();
-        let left_at = self.utc_now() + self.line.timing().transfer_time(length);
+        let left_at = self.leaves_at(frame(self.utc_now()).as_bytes().len());
+        info!("broadcasting {}", frame(left_at));
         let unknown = |lost| Unwritten::Unknown(Failure::Port(lost));
         let sent = self.line.send(frame(left_at).as_bytes()).map_err(unknown)?;
         self.sent = true;

@@ -4,10 +4,11 @@ use super::CommandError;
 use super::open_line::LinePlan;
 use super::report::Report;
 use super::trouble::Place;
-use crate::cli::Units;
+use crate::cli::{NumberingChoice, Units};
 use crate::client::{Client, Patience};
-use crate::codec::{ReadFunction, Unit};
+use crate::codec::{FunctionCode, ReadFunction, Unit};
 use crate::profile::plan::{Cost, Rules};
+use crate::profile::selector::Numbering;
 use crate::profile::{Limits, Plan, Point, Profile, Setup};
 use crate::readings::{Inquiry, Memory, Taken, take};
 
@@ -17,6 +18,28 @@ pub(super) fn units(typed: &Units, limits: &Limits) -> Result<Vec<Unit>, Command
     numbers
         .map(|number| Unit::new(*number, limits.units).map_err(CommandError::Unit))
         .collect()
+}
+
+/// Whether a meter answers a function.
+///
+/// # Errors
+/// [`CommandError::Function`] when it does not.
+pub(super) fn answered(profile: &Profile, function: FunctionCode) -> Result<(), CommandError> {
+    if profile.limits.functions.contains(&function) {
+        return Ok(());
+    }
+    Err(CommandError::Function {
+        meter: profile.name.clone(),
+        code: function.get(),
+    })
+}
+
+/// How register numbers are written.
+pub(super) const fn numbering(typed: NumberingChoice) -> Numbering {
+    match typed {
+        NumberingChoice::Protocol => Numbering::Protocol,
+        NumberingChoice::Modicon => Numbering::Modicon,
+    }
 }
 
 /// What every unit is asked.

@@ -11,7 +11,7 @@ use super::careful::Consent;
 use super::open_line::LinePlan;
 use super::report::{self, Report};
 use super::signals::Stop;
-use super::{CommandError, ExitCode, print};
+use super::{CommandError, ExitCode, print, print_frames};
 use crate::cli::BroadcastWrite;
 use crate::client::{Client, Patience, Unwritten};
 use crate::codec::{Broadcast, Unit, rtu};
@@ -41,11 +41,8 @@ pub(super) fn run(
     }
     if arguments.care.dry_run {
         let writes = message.writes(SystemClock::new().utc_now())?;
-        let frames = writes.iter().map(|write| {
-            let frame = rtu::encode_broadcast(Broadcast, write);
-            frame.to_string() + "\n"
-        });
-        return print(frames.collect::<String>().as_bytes());
+        let frame = |write| rtu::encode_broadcast(Broadcast, write);
+        return print_frames(writes.iter().map(frame));
     }
     let consent = Consent::of(message.hazards.clone(), arguments.care)?;
     let line = LinePlan::new(&arguments.line, profile);

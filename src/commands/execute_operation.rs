@@ -4,23 +4,24 @@ mod list;
 pub(super) mod telling;
 
 use self::telling::Telling;
+use log::info;
+
 use super::asking::{Asking, units};
 use super::careful::Consent;
 use super::fates::{self, Deed};
 use super::open_line::LinePlan;
 use super::report::{self, Report};
 use super::tour::Tour;
-use super::{CommandError, ExitCode, print};
+use super::{CommandError, ExitCode, print, print_frames};
 use crate::cli::ExecuteOperation;
 use crate::client::Client;
 use crate::codec::{Request, Unit, rtu};
-use crate::profile::write_plan::PlannedWrite;
 use crate::profile::writing::Broadcasting;
 use crate::profile::{Profile, Setup, find};
 use crate::readings::Fault;
 use crate::transport::{Clock, SystemClock};
 use crate::writing::before::allowed;
-use crate::writing::{before, carry_out, check};
+use crate::writing::{Receipt, before, check};
 
 /// Tells every unit to do it, one after the other.
 pub(super) fn run(
@@ -45,11 +46,11 @@ pub(super) fn run(
     let line = LinePlan::new(&arguments.line, Some(&profile));
     if arguments.care.dry_run {
         let request = Request::Write(telling.write(SystemClock::new().utc_now())?);
-        let frames = units
-            .iter()
-            .map(|unit| rtu::encode_request(*unit, &request));
-        let lines: String = frames.map(|frame| frame.to_string() + "\n").collect();
-        return print(lines.as_bytes());
+        return print_frames(
+            units
+                .iter()
+                .map(|unit| rtu::encode_request(*unit, &request)),
+        );
     }
     let hazards = telling.hazard().into_iter().collect();
     let consent = Consent::of(hazards, arguments.care)?;
@@ -125,13 +126,16 @@ impl Task<'_> {
             print(shown.as_bytes())?;
         }
         tour.begin(&place, client)?;
-        let planned = [PlannedWrite {
-            write: self.telling.write(client.utc_now())?,
-            changes: vec![0],
-        }];
-        let is_over = || tour.is_stopped();
-        let patience = self.asking.patience;
-        let replies = carry_out(client, unit, &planned, 1, patience, &is_over);
+        let write = self.telling.write(client.utc_now())?;
+        // What could be made once can be made always.
+        let make = |now| self.telling.write(now).unwrap_or_else(|_| write.clone());
+        let request = Request::Write(write.clone());
+        info!(
+            "unit {unit}: writing {}",
+            rtu::encode_request(unit, &request)
+        );
+        let result = client.write_made(unit, &make, self.asking.patience);
+        let fate = check::unread(Receipt::of(result));
         let deed = Deed {
             place: &place,
             name: &operation.name,
@@ -139,10 +143,7 @@ impl Task<'_> {
             done: "done",
             find_out: None,
         };
-        for reply in replies {
-            let fate = check::unread(reply);
-            tour.add(fates::tell(&deed, &fate, report));
-        }
+        tour.add(fates::tell(&deed, &fate, report));
         Ok(())
     }
 }

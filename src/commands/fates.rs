@@ -95,12 +95,10 @@ pub(super) fn tell(deed: &Deed<'_>, fate: &Fate, report: &mut Report) -> ExitCod
         }
         Fate::Unwritten(why) => deed.unwritten(why, report),
         Fate::Torn(why) => {
-            let text = format!(
-                "the first of its registers are {}, the others are not known to be",
-                deed.done
-            );
+            let text = format!("half of its registers are {}, and then:", deed.done);
             report::problem(&format!("{place}, {name}"), &text);
             deed.unwritten(why, report);
+            deed.advise(report);
             ExitCode::WriteUnknown
         }
     }

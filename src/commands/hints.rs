@@ -270,6 +270,6 @@ pub(super) fn failure_hint(failure: &Failure) -> Option<&'static str> {
              behind the gateway"
         }
         Failure::Port(_) => LOST_HINT,
-        Failure::Exception(_) => return None,
+        Failure::Stopped | Failure::Exception(_) => return None,
     })
 }

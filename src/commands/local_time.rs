@@ -28,7 +28,7 @@ impl Moment {
     /// [`CommandError::NoMoment`] for anything else, [`CommandError::NoTimeZone`] when this computer
     /// does not tell where it is.
     pub(super) fn parse(text: &str) -> Result<Self, CommandError> {
-        let text = text.trim();
+        let text = &text.trim().replace(' ', "T");
         if text == NOW {
             return Self::now();
         }

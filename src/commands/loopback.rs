@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use self::run::Run;
-use super::asking::units;
+use super::asking::{answered, units};
 use super::open_line::LinePlan;
 use super::report::Report;
 use super::signals::Stop;
@@ -20,7 +20,7 @@ use crate::output::loopback::LoopbackSink;
 use crate::output::loopback::csv::Csv;
 use crate::output::loopback::json::{Json, Settings};
 use crate::output::loopback::table::Table;
-use crate::profile::{Limits, LoopbackData, Profile, find};
+use crate::profile::{Limits, LoopbackData, find};
 use crate::readings::echo;
 use crate::readings::loopback::word;
 
@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &Loopback, report: &mut Report) -> Result<ExitCode,
     let unknown = Limits::default();
     let limits = profile.as_ref().map_or(&unknown, |profile| &profile.limits);
     if let Some(profile) = profile.as_ref() {
-        answered(profile)?;
+        answered(profile, FunctionCode::Diagnostics)?;
     }
     let units = units(&arguments.unit, limits)?;
     if arguments.forever && units.len() > 1 {
@@ -71,18 +71,6 @@ pub(super) fn run(arguments: &Loopback, report: &mut Report) -> Result<ExitCode,
     let _ = client.finish();
     result?;
     Ok(stop.requested().unwrap_or_else(|| run.code()))
-}
-
-/// Whether the meter has function 08.
-fn answered(profile: &Profile) -> Result<(), CommandError> {
-    let function = FunctionCode::Diagnostics;
-    if profile.limits.functions.contains(&function) {
-        return Ok(());
-    }
-    Err(CommandError::Function {
-        meter: profile.name.clone(),
-        code: function.get(),
-    })
 }
 
 /// What every unit is put to.

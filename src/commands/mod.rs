@@ -1,4 +1,4 @@
-//! One file a subcommand: arguments in, readings out. The only place that sees both the command
+//! One file a subcommand: arguments in, readings out or something written. The only place that sees both the command
 //! line and the rest.
 
 mod asking;
@@ -33,6 +33,7 @@ use std::ffi::OsString;
 use std::io::{self, Write};
 
 use crate::cli::{self, Command};
+use crate::codec::Frame;
 
 use report::Report;
 
@@ -61,7 +62,17 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments, &report),
         Command::Completions(arguments) => completions::print_script(&arguments),
     };
-    result.unwrap_or_else(|error| report.error(&error))
+    let code = result.unwrap_or_else(|error| report.error(&error));
+    match report.lost_output() {
+        Some(error) if code == ExitCode::Done => report.error(&error),
+        _ => code,
+    }
+}
+
+/// Writes frames to stdout in hex, one a line.
+fn print_frames(frames: impl IntoIterator<Item = Frame>) -> Result<ExitCode, CommandError> {
+    let lines = frames.into_iter().map(|frame| frame.to_string() + "\n");
+    print(lines.collect::<String>().as_bytes())
 }
 
 /// Writes text to stdout in one go.

@@ -2,20 +2,20 @@
 
 use std::collections::BTreeSet;
 
-use super::asking::{Asking, units};
+use super::asking::{Asking, answered, numbering, units};
 use super::open_line::LinePlan;
 use super::outlet::{self, Outlet};
 use super::report::{self, Report};
 use super::show_plan::ShownPlan;
 use super::signals::Stop;
 use super::{CommandError, ExitCode, print};
-use crate::cli::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
+use crate::cli::{FormatChoice, FunctionChoice, Layout, ReadRegisters};
 use crate::client::Client;
-use crate::codec::{FunctionCode, ReadFunction, Unit};
+use crate::codec::{ReadFunction, Unit};
 use crate::output::Heading;
 use crate::output::csv::WIDE_COLUMNS;
 use crate::output::influx::INFLUX_NAMES;
-use crate::profile::selector::{Numbering, Reading, select};
+use crate::profile::selector::{Reading, select};
 use crate::profile::{Limits, Point, Profile, find};
 use crate::readings::{Fault, Row};
 
@@ -152,17 +152,16 @@ fn points(
     profile: Option<&Profile>,
 ) -> Result<Vec<Point>, CommandError> {
     let reading = Reading {
-        numbering: match arguments.numbering {
-            NumberingChoice::Protocol => Numbering::Protocol,
-            NumberingChoice::Modicon => Numbering::Modicon,
-        },
+        numbering: numbering(arguments.numbering),
         function: typed_function(arguments),
         profile,
         ..Reading::default()
     };
     let points = select(&arguments.what, reading)?;
     if let Some(profile) = profile {
-        answered(&points, profile)?;
+        for function in points.iter().filter_map(|point| point.function) {
+            answered(profile, function.into())?;
+        }
         let is_heard = profile.limits.interchangeable_reads
             || points.iter().any(|point| point.function.is_some());
         if arguments.function.is_some() && !is_heard {
@@ -183,20 +182,6 @@ fn points(
         return Err(CommandError::ColumnClash { name, format });
     }
     Ok(points)
-}
-
-/// Whether the meter answers the functions that points need.
-fn answered(points: &[Point], profile: &Profile) -> Result<(), CommandError> {
-    let needed = points.iter().filter_map(|point| point.function);
-    for code in needed.map(FunctionCode::from) {
-        if !profile.limits.functions.contains(&code) {
-            return Err(CommandError::Function {
-                meter: profile.name.clone(),
-                code: code.get(),
-            });
-        }
-    }
-    Ok(())
 }
 
 fn typed_function(arguments: &ReadRegisters) -> Option<ReadFunction> {

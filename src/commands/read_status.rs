@@ -2,16 +2,16 @@
 
 use std::io::{self, Write};
 
-use super::asking::units;
+use super::asking::{answered, units};
 use super::open_line::LinePlan;
-use super::report::Report;
+use super::report::{self, Report};
 use super::signals::Stop;
-use super::{CommandError, ExitCode, print};
+use super::{CommandError, ExitCode, print_frames};
 use crate::cli::{ReadStatus, StatusFormat};
 use crate::client::Client;
 use crate::codec::{FunctionCode, Request, Response, Unit, rtu};
 use crate::output::status::{Form, StatusRow, Statuses, bits};
-use crate::profile::{Limits, Profile, find};
+use crate::profile::{Limits, find};
 use crate::readings::Fault;
 
 /// Reads and prints the status of every unit.
@@ -20,16 +20,17 @@ pub(super) fn run(arguments: &ReadStatus, report: &mut Report) -> Result<ExitCod
     let profile = profile.as_ref();
     let limits = profile.map_or_else(Limits::default, |profile| profile.limits.clone());
     if let Some(profile) = profile {
-        answered(profile)?;
+        answered(profile, FunctionCode::ReadExceptionStatus)?;
     }
     let units = units(&arguments.unit, &limits)?;
     let line = LinePlan::new(&arguments.line, profile);
     if arguments.dry_run {
-        let frames = units.iter().map(|unit| {
-            let frame = rtu::encode_request(*unit, &Request::ReadExceptionStatus);
-            frame.to_string() + "\n"
-        });
-        return print(frames.collect::<String>().as_bytes());
+        let request = Request::ReadExceptionStatus;
+        return print_frames(
+            units
+                .iter()
+                .map(|unit| rtu::encode_request(*unit, &request)),
+        );
     }
     let form = match arguments.format {
         StatusFormat::Table if report.is_quiet() => Form::Lines,
@@ -53,18 +54,6 @@ pub(super) fn run(arguments: &ReadStatus, report: &mut Report) -> Result<ExitCod
     result.map(|code| stop.requested().unwrap_or(code))
 }
 
-/// Whether the meter has function 07.
-fn answered(profile: &Profile) -> Result<(), CommandError> {
-    let function = FunctionCode::ReadExceptionStatus;
-    if profile.limits.functions.contains(&function) {
-        return Ok(());
-    }
-    Err(CommandError::Function {
-        meter: profile.name.clone(),
-        code: function.get(),
-    })
-}
-
 /// What every unit is asked.
 struct Status<'a> {
     meter: &'a str,
@@ -84,7 +73,7 @@ impl Status<'_> {
         let patience = self.line.patience(self.limits);
         let mut delivered = 0;
         let mut faults = Vec::new();
-        for unit in units.iter().copied() {
+        for (index, unit) in units.iter().copied().enumerate() {
             let time = client.utc_now();
             let answer = client.request(unit, &Request::ReadExceptionStatus, patience);
             let bits = match answer {
@@ -109,7 +98,9 @@ impl Status<'_> {
                 bits,
             };
             sink.row(&row).map_err(CommandError::Output)?;
-            if stop.requested().is_some() {
+            // Each of the others would look for a port that is lost as long.
+            if stop.requested().is_some() || client.is_lost() {
+                report::untried_units(units.len() - index - 1);
                 break;
             }
         }

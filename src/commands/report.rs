@@ -33,6 +33,7 @@ pub(super) fn usage(message: &Usage) -> ExitCode {
 pub(super) struct Report {
     quiet: bool,
     hinted: BTreeSet<String>,
+    lost_output: Option<io::Error>,
 }
 
 impl Report {
@@ -41,6 +42,7 @@ impl Report {
         Self {
             quiet,
             hinted: BTreeSet::new(),
+            lost_output: None,
         }
     }
 
@@ -123,12 +125,19 @@ impl Report {
         self.advise("the meter does not have function 07");
     }
 
-    /// Prints what was done.
-    pub(super) fn success(&self, text: &str) {
-        if !self.quiet {
-            // As readings are: stdout is what was asked for.
-            let _ = writeln!(io::stdout(), "{}", escape(text));
+    /// Prints what was done on stdout: it is what was asked for. Where that cannot be written, the work
+    /// goes on: see [`Self::lost_output`].
+    pub(super) fn success(&mut self, text: &str) {
+        if !self.quiet
+            && let Err(cause) = writeln!(io::stdout(), "{}", escape(text))
+        {
+            self.lost_output.get_or_insert(cause);
         }
+    }
+
+    /// Why something that was done could not be printed.
+    pub(super) fn lost_output(&mut self) -> Option<CommandError> {
+        self.lost_output.take().map(CommandError::Output)
     }
 
     /// Prints that a meter has refused to be written to.

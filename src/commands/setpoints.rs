@@ -2,11 +2,12 @@
 //! what it has answered.
 
 use super::CommandError;
+use super::asking::numbering;
 use super::careful::Hazard;
 use crate::cli::{NumberingChoice, WriteFunctionChoice};
 use crate::codec::value::ByteOrder;
 use crate::profile::assignment::{Assignment, alike, apart, assignments};
-use crate::profile::selector::{Numbering, Purpose, Reading};
+use crate::profile::selector::{Purpose, Reading};
 use crate::profile::write_plan::{Change, PlannedWrite, WriteRules, in_pieces, plan};
 use crate::profile::writing::{Broadcasting, Distinct, Moves, WriteFunction};
 use crate::profile::{Point, Profile, Scales, Setup};
@@ -222,14 +223,11 @@ pub(super) fn piecemeal(changes: &[Change], planned: &[PlannedWrite]) -> Vec<Str
 /// What was typed, as far as it can be checked without a meter.
 pub(super) fn typed(
     what: &[String],
-    numbering: NumberingChoice,
+    numbered: NumberingChoice,
     profile: Option<&Profile>,
 ) -> Result<Vec<Assignment>, CommandError> {
     let reading = Reading {
-        numbering: match numbering {
-            NumberingChoice::Protocol => Numbering::Protocol,
-            NumberingChoice::Modicon => Numbering::Modicon,
-        },
+        numbering: numbering(numbered),
         profile,
         purpose: Purpose::Write,
         ..Reading::default()

@@ -7,10 +7,10 @@ use super::open_line::LinePlan;
 use super::report::{self, Report};
 use super::setpoints::{Job, Ready, insisted, moving, piecemeal, typed};
 use super::tour::Tour;
-use super::{CommandError, ExitCode, print};
+use super::{CommandError, ExitCode, print, print_frames};
 use crate::cli::{NumberingChoice, WriteSetpoint};
 use crate::client::Client;
-use crate::codec::{Request, Unit, rtu};
+use crate::codec::{Frame, Request, Unit, rtu};
 use crate::output::changes::{Line, table};
 use crate::profile::EncodeError;
 use crate::profile::assignment::AssignError;
@@ -35,7 +35,7 @@ pub(super) fn run(
     let job = Job::new(assignments, profile, rules)?.one_by_one(units.len())?;
     if arguments.care.dry_run {
         let (_, planned) = job.ready_unread()?;
-        return print(frames(&units, &planned).as_bytes());
+        return print_frames(frames(&units, &planned));
     }
     let consent = Consent::of(job.hazards(), arguments.care)?;
 
@@ -59,14 +59,17 @@ pub(super) fn run(
     Ok(code)
 }
 
-/// The requests as they would go out, one a line.
-fn frames(units: &[Unit], planned: &[PlannedWrite]) -> String {
+/// The requests as they would go out.
+fn frames(units: &[Unit], planned: &[PlannedWrite]) -> Vec<Frame> {
+    let requests = planned
+        .iter()
+        .map(|planned| Request::Write(planned.write.clone()));
+    let requests: Vec<Request> = requests.collect();
     let of_unit = |unit: &Unit| {
         let unit = *unit;
-        planned.iter().map(move |planned| {
-            let request = Request::Write(planned.write.clone());
-            rtu::encode_request(unit, &request).to_string() + "\n"
-        })
+        requests
+            .iter()
+            .map(move |request| rtu::encode_request(unit, request))
     };
     units.iter().flat_map(of_unit).collect()
 }

@@ -11,7 +11,7 @@ pub fn table(operations: &[Operation]) -> String {
             Action::Number { number, data } => {
                 let data = data.as_deref();
                 let takes = data.map(|data| data.about.clone());
-                (number.to_string(), takes.unwrap_or_default())
+                (format!("number {number}"), takes.unwrap_or_default())
             }
             Action::Register { address, value } => (format!("{address}={value}"), String::new()),
         };
@@ -19,5 +19,5 @@ pub fn table(operations: &[Operation]) -> String {
         let cells = [operation.name.clone(), how, takes, hazard];
         cells.iter().map(|cell| escape(cell)).collect()
     });
-    columns(&["OPERATION", "NUMBER", "TAKES", "HAZARD"], &[], rows)
+    columns(&["OPERATION", "TOLD BY", "TAKES", "HAZARD"], &[], rows)
 }

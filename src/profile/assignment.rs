@@ -1,5 +1,7 @@
 //! What a person types to write: `NAME=VALUE`, `0x1028=500`.
 
+use rust_decimal::Decimal;
+use rust_decimal::prelude::ToPrimitive;
 use thiserror::Error;
 
 use super::encoding::EncodeError;
@@ -260,12 +262,18 @@ impl Assignment {
     /// [`AssignError::Value`] and [`AssignError::NotTaken`].
     pub fn change(&self, scales: &Scales) -> Result<Change, AssignError> {
         let name = || self.point.name.clone();
-        let registers = self.point.encode(&self.value, scales);
-        let registers = registers.map_err(|problem| AssignError::Value {
-            name: name(),
-            problem: Box::new(problem),
-        })?;
         let rules = self.known.as_deref().unwrap_or(&self.point);
+        let registers = self.point.encode(&self.value, scales);
+        let registers = registers.map_err(|problem| match rather(rules, &problem) {
+            Some(problem) => AssignError::NotTaken {
+                name: name(),
+                problem: Box::new(problem),
+            },
+            None => AssignError::Value {
+                name: name(),
+                problem: Box::new(problem),
+            },
+        })?;
         match rules.takes(&registers) {
             Ok(()) => Ok(Change {
                 point: self.point.clone(),
@@ -278,4 +286,50 @@ impl Assignment {
             }),
         }
     }
+}
+
+/// What the meter does not take about a figure that the registers cannot hold: the nearest that they
+/// can are of no use where it does not take those either. `None` where it does.
+fn rather(point: &Point, problem: &EncodeError) -> Option<NotTaken> {
+    let scale = point.constant_scale()?;
+    let raw = |figure: Decimal| figure.checked_div(scale)?.to_i128();
+    let (found, near) = match problem {
+        EncodeError::BetweenSteps {
+            found,
+            below,
+            above,
+        } => (*found, vec![raw(*below)?, raw(*above)?]),
+        EncodeError::OutOfRange { found, lowest, .. } => {
+            (Decimal::from_str_exact(found).ok()?, vec![raw(*lowest)?])
+        }
+        _ => return None,
+    };
+    let is_beyond = matches!(problem, EncodeError::OutOfRange { .. });
+    if let Some((lowest, highest)) = point.limits
+        && (is_beyond || near.iter().any(|raw| !(lowest..=highest).contains(raw)))
+    {
+        let [lowest, highest] = [lowest, highest].map(|raw| point.figure(raw));
+        let also = point.all_shown(point.writing().also.iter());
+        return Some(NotTaken::Range {
+            found,
+            lowest,
+            highest,
+            also,
+        });
+    }
+    let problem = near
+        .into_iter()
+        .find_map(|raw| point.takes_raw(raw).err())?;
+    Some(match problem {
+        NotTaken::Step {
+            step, below, above, ..
+        } => NotTaken::Step {
+            found,
+            step,
+            below,
+            above,
+        },
+        NotTaken::Allowed { allowed, .. } => NotTaken::Allowed { found, allowed },
+        problem => problem,
+    })
 }

@@ -341,6 +341,8 @@ pub fn near(name: &str, profile: &Profile) -> Vec<String> {
 /// Up to three of these names that look like `name`, the nearest first.
 pub fn alike<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
     const ALIKE: f64 = 0.75;
+    // Names are lower case.
+    let name = &*name.to_lowercase();
     let mut scored: Vec<(f64, &str)> = names
         .map(|known| (strsim::jaro_winkler(name, known), known))
         .filter(|(score, _)| *score >= ALIKE)

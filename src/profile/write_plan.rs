@@ -62,7 +62,7 @@ pub enum WritePlanError {
         meter: String,
     },
     /// The point takes another function alone.
-    #[error("{name} is written with function {}", FunctionCode::from(*.function))]
+    #[error("{name} is written with {} alone", FunctionCode::from(*.function))]
     OtherFunction {
         /// The point.
         name: String,

@@ -1,5 +1,6 @@
 //! What may be written to a meter, and what that does.
 
+use jiff::civil::Time;
 use rust_decimal::Decimal;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -172,7 +173,7 @@ pub struct Distinct {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NotTaken {
     /// Beyond its limits.
-    #[error("{found} is not within {lowest} to {highest}{}", besides(.also))]
+    #[error("{found} is not {}{}", span(.lowest, .highest), besides(.also))]
     Range {
         /// What was given.
         found: Decimal,
@@ -195,6 +196,14 @@ pub enum NotTaken {
         /// The next value above.
         above: Decimal,
     },
+    /// A time of day that is no whole number of its steps.
+    #[error("{found} is no multiple of {step} ms")]
+    TimeStep {
+        /// What was given.
+        found: Time,
+        /// The distance of two times.
+        step: u16,
+    },
     /// None of the few it takes.
     #[error("{found} is none of {}", .allowed.join(", "))]
     Allowed {
@@ -203,6 +212,14 @@ pub enum NotTaken {
         /// What is taken, as it is shown.
         allowed: Vec<String>,
     },
+}
+
+fn span(lowest: &Decimal, highest: &Decimal) -> String {
+    if lowest == highest {
+        lowest.to_string()
+    } else {
+        format!("within {lowest} to {highest}")
+    }
 }
 
 fn besides(also: &[String]) -> String {
@@ -227,9 +244,25 @@ impl Point {
         let raw = match self.raw_value(registers) {
             Ok(Raw::Integer(raw)) => raw,
             Ok(Raw::Word(word)) => word.into(),
-            // Texts, dates and times have no limits but those of their type.
+            Ok(Raw::Time(found)) => return self.takes_time(found),
+            // Texts and dates have no limits but those of their type.
             _ => return Ok(()),
         };
+        self.takes_raw(raw)
+    }
+
+    /// Whether the meter takes a time of day: its step is one of milliseconds.
+    fn takes_time(&self, found: Time) -> Result<(), NotTaken> {
+        let step = self.writing().step.max(1);
+        let milliseconds = i64::from(found.second()) * 1000 + i64::from(found.millisecond());
+        if milliseconds % i64::from(step) == 0 {
+            return Ok(());
+        }
+        Err(NotTaken::TimeStep { found, step })
+    }
+
+    /// Whether the meter takes a raw number.
+    pub(super) fn takes_raw(&self, raw: i128) -> Result<(), NotTaken> {
         let writing = self.writing();
         let is = |number: &i64| i128::from(*number) == raw;
         if writing.also.iter().any(is) {
@@ -268,13 +301,13 @@ impl Point {
     }
 
     /// A raw number as the point shows it without its labels.
-    fn figure(&self, raw: i128) -> Decimal {
+    pub(super) fn figure(&self, raw: i128) -> Decimal {
         let scale = self.constant_scale().unwrap_or(Decimal::ONE);
         times(raw, 0, scale).unwrap_or_default()
     }
 
     /// Raw numbers as the point shows them, with their labels.
-    fn all_shown<'a>(&self, raws: impl Iterator<Item = &'a i64>) -> Vec<String> {
+    pub(super) fn all_shown<'a>(&self, raws: impl Iterator<Item = &'a i64>) -> Vec<String> {
         let shown = raws.map(|raw| {
             let figure = self.figure(i128::from(*raw));
             match u16::try_from(*raw).ok().and_then(|code| self.label(code)) {

@@ -46,6 +46,7 @@ impl From<&Failure> for Fault {
     fn from(failure: &Failure) -> Self {
         match failure {
             Failure::Silence { .. }
+            | Failure::Stopped
             | Failure::OnlyEcho
             | Failure::Ambiguous
             | Failure::NeverQuiet { .. } => Self::Timeout,

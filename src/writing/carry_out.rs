@@ -75,6 +75,11 @@ fn goes_on(planned: &PlannedWrite, after: &[PlannedWrite]) -> bool {
 }
 
 impl Receipt {
+    /// What came of a change that is one write.
+    pub fn of(result: Result<Confirmation, Unwritten>) -> Self {
+        Self::NotTried.followed_by(&result.map_err(Arc::new))
+    }
+
     /// Whether nothing has gone wrong so far.
     pub const fn is_no_failure(&self) -> bool {
         matches!(self, Self::Confirmed | Self::Stored(_) | Self::NotTried)

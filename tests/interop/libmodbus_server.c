@@ -1,4 +1,4 @@
-/* A Modbus RTU server made of libmodbus, to read with our client.
+/* A Modbus RTU server made of libmodbus, to read and write with our client.
  *
  * usage: libmodbus_server DEVICE BAUD none|even|odd UNIT
  *

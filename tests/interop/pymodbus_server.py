@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A Modbus RTU server made of pymodbus, to read with our client.
+"""A Modbus RTU server made of pymodbus, to read and write with our client.
 
 Units 1 and 2, each with 300 holding and 300 input registers from address 0
 and the values that `run` computes; pymodbus answers exception 02 beyond them.

@@ -11,7 +11,7 @@ use crate::profile::error::{Problem, ProfileError};
 use crate::profile::format::{DataTable, OperationTable};
 use crate::profile::model::Limits;
 use crate::profile::point::{Access, Labels, Point};
-use crate::profile::writing::{Action, Broadcasting, CommandRegisters, Operation};
+use crate::profile::writing::{Action, Broadcasting, CommandRegisters, Operation, Writing};
 
 /// What operations are checked against.
 pub(super) struct Known<'a> {
@@ -199,24 +199,43 @@ fn data(
         let expected = format!("a type of at most {most} registers, that fit behind the number");
         return Err(source.value(&table.kind, &key("type"), expected));
     };
+    let limits = table
+        .range
+        .as_ref()
+        .map(|range| writable(source, range, kind, &key("range")))
+        .transpose()?;
+    let labels = match &table.labels {
+        None => Labels::None,
+        Some(labels) => named(source, labels, kind, known.labels, &key("labels"))?,
+    };
     Ok(Point {
         name: name.clone(),
         about: table.about.clone(),
         access: Access::Write,
-        limits: table
-            .range
-            .as_ref()
-            .map(|range| writable(source, range, kind, &key("range")))
-            .transpose()?,
-        labels: match &table.labels {
-            None => Labels::None,
-            Some(labels) => named(source, labels, kind, known.labels, &key("labels"))?,
-        },
+        writing: named_alone(&labels, limits),
+        limits,
+        labels,
         label_table: table.labels.as_ref().and_then(label_table),
         verified: operation.verified,
         page: operation.page.clone(),
         ..Point::raw(range, kind, ByteOrder::default())
     })
+}
+
+/// Of codes that have names, those alone mean something to an operation.
+fn named_alone(labels: &Labels, limits: Option<(i128, i128)>) -> Option<Box<Writing>> {
+    let Labels::Codes(names) = labels else {
+        return None;
+    };
+    let is_within = |code: &&u16| {
+        let code = i128::from(**code);
+        limits.is_none_or(|(lowest, highest)| (lowest..=highest).contains(&code))
+    };
+    let allowed = names.keys().filter(is_within);
+    Some(Box::new(Writing {
+        allowed: allowed.copied().map(i64::from).collect(),
+        ..Writing::default()
+    }))
 }
 
 /// The registers before the data: the code and the number.

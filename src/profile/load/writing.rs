@@ -197,8 +197,9 @@ impl Numbers<'_> {
         let Some(step) = &self.row.step else {
             return Ok(());
         };
-        if !self.kind.is_integer() {
-            return Err(self.conflict(step, "step", "only an integer has a step"));
+        // That of a time is one of milliseconds.
+        if !self.kind.is_integer() && self.kind != RegisterType::Time {
+            return Err(self.conflict(step, "step", "only an integer or a time has a step"));
         }
         if self.step < 2 {
             let key = self.key("step");

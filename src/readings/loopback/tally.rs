@@ -140,7 +140,7 @@ impl Tally {
         let failed = &mut self.failed;
         *match failure {
             Failure::Exception(_) => &mut failed.refused,
-            Failure::Silence { .. } => &mut failed.silent,
+            Failure::Silence { .. } | Failure::Stopped => &mut failed.silent,
             Failure::OnlyEcho => &mut failed.only_echo,
             Failure::Damaged { .. } => &mut failed.damaged,
             Failure::Truncated { .. } => &mut failed.truncated,
