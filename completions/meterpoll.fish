@@ -34,6 +34,7 @@ complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "broadcast" -d '
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "execute-operation" -d 'Have a meter do something: reset, clear energy, set its clock'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "read-status" -d 'Read the eight status bits of a meter, by name (function 07)'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "loopback" -d 'Send words to a unit and compare what comes back: is the line good?'
+complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "poll" -d 'Read meters over and over, at a fixed rate, into files; or once, as from cron'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "ports" -d 'List serial ports, without opening any'
 complete -c meterpoll -n "__fish_meterpoll_needs_command" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
@@ -215,6 +216,43 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s q -l qu
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s h -l help -d 'Print help (see more with \'--help\')'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand loopback" -s V -l version -d 'Print version'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l config -d 'A site file: lines, meters, intervals and outputs; a port that is given besides is not used' -r -F
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s a -l unit -d 'The units to read: 17, or 1,2,5-9; --unit-id and --slave mean the same' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l meter -d 'The meter: a name that `meters list` shows, or a profile file' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l every -d 'How often, from 10ms to 24h: on round times in UTC, so that 15m is at :00, :15, :30 and :45; what does not divide a day counts from 1970-01-01' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l deadline -d 'How long --once may take in all; what it does not come to is missing [default: the shortest interval, where there is one]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s f -l format -d 'How rows are written [default: csv; on a terminal, a table of the last values in place of rows]' -r -f -a "csv\t'Comma-separated values with a header'
+jsonl\t'One object a line, one a reading'
+influx\t'Influx line protocol'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l layout -d 'Shape of CSV [default: wide]' -r -f -a "wide\t'A row a meter, a column a point'
+long\t'A row a reading'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l on-schema-change -d 'What to do about a file with other columns, or that holds something else' -r -f -a "refuse\t'Write nothing, and end with code 7'
+new-file\t'Go on in name.2.csv, name.3.csv and on, the first that fits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s p -l port -d 'Serial port such as /dev/ttyUSB0 or COM3, or `sim:` for the simulated line; the variable `METERPOLL_PORT` serves as well' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s b -l baud -d 'Speed in bits a second [default: the meter\'s factory setting, else 9600]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s P -l parity -d 'Parity [default: the meter\'s factory setting, else none]' -r -f -a "none\t'No parity bit'
+even\t'Even parity, the standard\'s default'
+odd\t'Odd parity'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s s -l stop-bits -d 'Stop bits [default: the meter\'s factory setting, else 1]' -r -f -a "1\t'One stop bit'
+2\t'Two stop bits'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s t -l timeout -d 'How long a meter may take to begin its answer, such as 500ms; a late one is waited for as long again and thrown away [default: the meter\'s longest answer time, else 1s]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l retries -d 'How often a read is repeated when the line fails, at most 100 times' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l pause -d 'Least time between the end of an answer and the next request [default: what the meter wants; 3.5 characters of silence are kept always]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l settle -d 'Time to wait after opening the port, for adapters that need it' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l echo -d 'Whether the line sends our own bytes back, as two-wire adapters may' -r -f -a "auto\t'Recognise an echo when one comes'
+on\t'The line echoes'
+off\t'The line does not echo'"
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s o -l output -d 'Append the rows to this file and print none; {meter} and the fields of strftime, such as %Y-%m-%d, are filled in, in UTC' -r -F
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l wait -d 'How long to wait for a port that another program holds; after that the message names it where the system tells' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l once -d 'Read everything once and end, as from cron'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l check -d 'Check everything, print what would be read when and how long that takes, and open nothing'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l skip-failed -d 'Write no row where nothing could be read'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l units -d 'Put units into the header of wide CSV'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l no-sync -d 'Leave it to the system when rows reach the disk: less wear of flash memory, and a power cut can take the last ones'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s h -l help -d 'Print help (see more with \'--help\')'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s V -l version -d 'Print version'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s q -l quiet -d 'Print readings and errors only: no headings, footnotes or hints'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand meters; and not __fish_seen_subcommand_from list show export check verify help" -s h -l help -d 'Print help'
@@ -297,17 +335,18 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s q -l
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s v -l verbose -d 'Say what is being done; twice: show every frame in hex with times'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s h -l help -d 'Print help'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand completions" -s V -l version -d 'Print version'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "write-setpoint" -d 'Write points of a meter by name, or raw registers by address, and read them back'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "broadcast" -d 'Write to every meter on the line at once, without an answer'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "execute-operation" -d 'Have a meter do something: reset, clear energy, set its clock'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "read-status" -d 'Read the eight status bits of a meter, by name (function 07)'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "loopback" -d 'Send words to a unit and compare what comes back: is the line good?'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "ports" -d 'List serial ports, without opening any'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "completions" -d 'Print a shell\'s completion script'
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback meters ports simulate completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "read-registers" -d 'Read points of a meter by name, or raw registers by address'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "write-setpoint" -d 'Write points of a meter by name, or raw registers by address, and read them back'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "broadcast" -d 'Write to every meter on the line at once, without an answer'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "execute-operation" -d 'Have a meter do something: reset, clear energy, set its clock'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "read-status" -d 'Read the eight status bits of a meter, by name (function 07)'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "loopback" -d 'Send words to a unit and compare what comes back: is the line good?'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "poll" -d 'Read meters over and over, at a fixed rate, into files; or once, as from cron'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "meters" -d 'List known meters, show one, print its profile, check a profile, verify it on a live meter'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "ports" -d 'List serial ports, without opening any'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "simulate" -d 'Be a meter, or several, on a pty, a serial port or TCP, with faults on request'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "completions" -d 'Print a shell\'s completion script'
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and not __fish_seen_subcommand_from read-registers write-setpoint broadcast execute-operation read-status loopback poll meters ports simulate completions help" -f -a "help" -d 'Print this message or the help of the given subcommand(s)'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "list" -d 'List the meters inside the program and your own'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "show" -d 'Show a meter: its line, limits and groups, and its points'
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand help; and __fish_seen_subcommand_from meters" -f -a "export" -d 'Print the profile of a meter as the TOML file that it is'

@@ -6,6 +6,7 @@
 //! main → commands → cli        what can be typed
 //!                 → output     readings, and what a meter is, to table, CSV, JSON
 //!                   → append   rows to files that others append to as well
+//!                 → polling    when which meter is read, over and over
 //!                 → writing    points written, once, and what became of it
 //!                 → readings   a read plan carried out: a value or a fault for each point
 //!                 → sim        a simulated meter and its line
@@ -36,6 +37,7 @@ pub mod client;
 pub mod codec;
 pub mod commands;
 pub mod output;
+pub mod polling;
 pub mod profile;
 pub mod readings;
 pub mod sim;

@@ -12,18 +12,22 @@ use std::path::{Path, PathBuf};
 use support::paths::{modules, paths};
 
 /// What each module, and each file directly in `src/`, may import from besides itself.
-const LAYERS: [(&str, &[&str]); 15] = [
+const LAYERS: [(&str, &[&str]); 16] = [
     ("codec", &[]),
     ("transport", &["codec"]),
     ("profile", &["codec", "transport"]),
     ("client", &["codec", "transport", "words"]),
     ("sim", &["codec", "transport", "profile", "words"]),
     ("readings", &["codec", "client", "profile", "words"]),
+    (
+        "polling",
+        &["client", "codec", "profile", "readings", "transport"],
+    ),
     ("append", &["transport"]),
     ("writing", &["client", "codec", "profile", "readings"]),
     (
         "output",
-        &["append", "codec", "profile", "readings", "words"],
+        &["append", "codec", "polling", "profile", "readings", "words"],
     ),
     ("cli", &[]),
     (
@@ -34,6 +38,7 @@ const LAYERS: [(&str, &[&str]); 15] = [
             "client",
             "codec",
             "output",
+            "polling",
             "profile",
             "readings",
             "sim",
@@ -66,8 +71,11 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
         &[
             "cli/",
             "client/",
+            "commands/poll/forecast.rs",
             "output/loopback/",
             "output/profile/",
+            "polling/schedule.rs",
+            "polling/site/",
             "profile/",
             "transport/error.rs",
             "transport/faulty/",
@@ -81,6 +89,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
         "rustix",
         &[
             "append/system.rs",
+            "commands/poll/screen.rs",
             "transport/lock.rs",
             "transport/pty.rs",
             "transport/pty/",
@@ -95,6 +104,7 @@ const LIBRARIES: [(&str, &[&str]); 22] = [
     (
         "toml",
         &[
+            "polling/site/",
             "profile/advice/",
             "profile/format.rs",
             "profile/format/",

@@ -82,7 +82,7 @@ fn every_example_that_needs_no_adapter_runs() {
             ran += 1;
         }
     }
-    assert_eq!(ran, 20);
+    assert_eq!(ran, 22);
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn every_fault_is_named_and_every_rule_shown_is_one() {
 fn the_profile_shown_loads_and_there_is_nothing_to_say_about_it() {
     let folder = with_the_profile("checked");
     let (profile, advice) =
-        meterpoll::profile::advice::advise("mine.toml", blocks("toml")[0]).expect("it loads");
+        meterpoll::profile::advice::advise("mine.toml", profile_shown()).expect("it loads");
     assert_eq!(profile.points.len(), 6);
     assert_eq!(profile.factors.len(), 1);
     assert_eq!(profile.identities.len(), 1);
@@ -141,11 +141,40 @@ fn a_meter_is_read_with_the_profile_shown() {
     .run();
 }
 
+/// The block that is a profile.
+fn profile_shown() -> &'static str {
+    let blocks = blocks("toml").into_iter();
+    let mut profiles = blocks.filter(|block| block.starts_with("name = "));
+    profiles.next().expect("a profile")
+}
+
+#[test]
+fn the_site_file_shown_loads_and_so_does_the_one_that_shows_every_key() {
+    use meterpoll::polling::site::load::load;
+
+    let blocks = blocks("toml").into_iter();
+    let shown = blocks.filter(|block| block.starts_with("[defaults]"));
+    let shown: Vec<&str> = shown.collect();
+    assert_eq!(shown.len(), 1);
+    let site = load("README.md", shown[0], "").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(site.jobs.len(), 3);
+
+    let every_key: String = include_str!("../src/polling/site/format.rs")
+        .lines()
+        .skip_while(|line| *line != "//! ```toml")
+        .skip(1)
+        .take_while(|line| *line != "//! ```")
+        .flat_map(|line| [line.trim_start_matches("//!").trim_start(), "\n"])
+        .collect();
+    let site = load("format.rs", &every_key, "").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(site.jobs.len(), 2);
+}
+
 /// A folder with the profile shown in it.
 fn with_the_profile(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("readme-{name}"));
     fs::create_dir_all(&folder).expect("the folder for tests is writable");
-    fs::write(folder.join("mine.toml"), blocks("toml")[0]).expect("the folder is writable");
+    fs::write(folder.join("mine.toml"), profile_shown()).expect("the folder is writable");
     folder
 }
 
@@ -214,6 +243,7 @@ fn every_option_it_names_is_in_the_help() {
         "execute-operation",
         "read-status",
         "loopback",
+        "poll",
         "simulate",
     ];
     let help = commands

@@ -22,6 +22,12 @@ mod meters;
 mod output;
 #[allow(
     rustdoc::broken_intra_doc_links,
+    rustdoc::invalid_html_tags,
+    reason = "its doc comments are help texts, where [default: ...] is no link"
+)]
+mod poll;
+#[allow(
+    rustdoc::broken_intra_doc_links,
     reason = "its doc comments are help texts, where [default: ...] is no link"
 )]
 mod read_registers;
@@ -51,6 +57,7 @@ pub use meters::{
     CheckMeters, ExportMeter, Meters, MetersCommand, ShowFormat, ShowMeter, VerifyMeter,
 };
 pub use output::{OutputArguments, SchemaChange};
+pub use poll::{Poll, RowFormat};
 pub use read_registers::{FormatChoice, FunctionChoice, Layout, NumberingChoice, ReadRegisters};
 pub use read_status::{ReadStatus, StatusFormat};
 pub use simulate::Simulate;
@@ -160,6 +167,18 @@ pub enum Command {
     /// Ends with 0 when every try was answered, and with 1 when some were; when none was, with the
     /// code of the cause: 4, or 5 when all were refused; with 3 when the port was lost.
     Loopback(Box<Loopback>),
+    /// Read meters over and over, at a fixed rate, into files; or once, as from cron
+    ///
+    /// Many meters on many lines, from a site file, or those of one line. Every slot has one row a
+    /// meter: a value that could not be read is missing, and the row says why. A meter that is silent
+    /// costs the others little, and is read again when it answers; so is a port that was lost. Errors
+    /// are told once, and again when they are over.
+    ///
+    /// SIGINT, SIGTERM and SIGHUP end it after the row in hand.
+    ///
+    /// With --once it ends with 0 when everything was read, and with 1 when some was; when nothing
+    /// was, with the code of the cause.
+    Poll(Box<Poll>),
     /// List known meters, show one, print its profile, check a profile, verify it on a live meter
     Meters(Meters),
     /// List serial ports, without opening any

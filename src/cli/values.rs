@@ -21,6 +21,14 @@ pub(super) fn duration(text: &str) -> Result<Duration, String> {
     }
 }
 
+/// From one read to the next.
+pub(super) fn interval(text: &str) -> Result<Duration, String> {
+    match duration(text)? {
+        time if time < Duration::from_millis(10) => Err("the shortest interval is 10ms".to_owned()),
+        time => Ok(time),
+    }
+}
+
 /// A duration above zero.
 pub(super) fn timeout(text: &str) -> Result<Duration, String> {
     match duration(text)? {

@@ -119,6 +119,7 @@ impl<'a> Asking<'a> {
     /// Where, what and how often something was tried.
     pub(super) fn place<'b>(&'b self, unit: Unit, points: &'b [Point]) -> Place<'b> {
         Place {
+            meter: "",
             line: &self.line,
             unit,
             points,

@@ -6,6 +6,8 @@ use thiserror::Error;
 
 use crate::append::AppendError;
 use crate::codec::{AddressError, Unit};
+use crate::polling::SiteError;
+use crate::polling::site::PathError;
 use crate::profile::assignment::AssignError;
 use crate::profile::find::FindError;
 use crate::profile::selector::SelectError;
@@ -190,6 +192,35 @@ pub enum CommandError {
         option: &'static str,
         /// What it has an effect on: a format, one unit, a serial port.
         what: &'static str,
+    },
+    /// The site file is wrong.
+    #[error(transparent)]
+    Site(#[from] SiteError),
+    /// Nothing says how often something is read.
+    #[error("nothing says how often {what} is read")]
+    NoInterval {
+        /// The meter.
+        what: String,
+    },
+    /// A path that names no file.
+    #[error("--output {path}: {problem}")]
+    Path {
+        /// What was typed.
+        path: String,
+        /// What is wrong with it.
+        problem: PathError,
+    },
+    /// Rows with different columns in one file of wide CSV.
+    #[error(
+        "{first} and {second} have different columns, and both would go to {place} as wide CSV"
+    )]
+    Columns {
+        /// What has some.
+        first: String,
+        /// What has others.
+        second: String,
+        /// The file, or stdout.
+        place: String,
     },
     /// A meter whose profile says nothing that could be tested.
     #[error("the profile of {meter} has no [[identities]] that could be tested")]

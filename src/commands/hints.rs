@@ -66,6 +66,14 @@ pub(super) fn hint(error: &CommandError) -> Option<String> {
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
+        CommandError::NoInterval { .. } => {
+            "give an interval such as --every 1m, in a site file every = \"1m\"; --once needs none"
+        }
+        CommandError::Columns { .. } => {
+            "give each an output of its own, put {meter} into its path, or take another layout or \
+             format"
+        }
+        CommandError::Path { .. } => "a % is written %%",
         CommandError::Function { code: 7 | 8, .. } => {
             "without --meter it is sent all the same, and the meter may refuse it"
         }

@@ -16,6 +16,7 @@ mod loopback;
 mod meters;
 mod open_line;
 mod outlet;
+mod poll;
 mod ports;
 mod read_registers;
 mod read_status;
@@ -55,6 +56,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::ExecuteOperation(arguments) => execute_operation::run(&arguments, &mut report),
         Command::ReadStatus(arguments) => read_status::run(&arguments, &mut report),
         Command::Loopback(arguments) => loopback::run(&arguments, &mut report),
+        Command::Poll(arguments) => poll::run(&arguments, &mut report),
         Command::Meters(arguments) => meters::run(&arguments, &mut report),
         Command::Ports => ports::list(&report),
         Command::Simulate(arguments) => simulate::run(&arguments, &report),

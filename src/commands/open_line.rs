@@ -7,9 +7,9 @@ use log::info;
 
 use super::CommandError;
 use crate::cli::{EchoChoice, LineArguments, ParityChoice, StopBitsChoice};
-use crate::client::{Client, Echo, Patience, QueryData, Ways};
-use crate::codec::FunctionCode;
-use crate::profile::{Limits, LoopbackData, Profile};
+use crate::client::{Client, Echo, Patience};
+use crate::polling::{Manners, PortError};
+use crate::profile::{Limits, Profile};
 use crate::sim::SimulatedLine;
 use crate::transport::serial::Serial;
 use crate::transport::traced::Traced;
@@ -19,6 +19,9 @@ use crate::transport::{
 
 /// How often a busy port is tried again.
 const TRY_AGAIN: Duration = Duration::from_millis(50);
+
+/// How the simulated line is named.
+const SIMULATED: &str = "sim:";
 
 /// Values of the simulated line are the same in every run at the same time.
 const SEED: u64 = 17;
@@ -59,22 +62,7 @@ impl<'a> LinePlan<'a> {
 
     /// How patient to be with a meter of these limits.
     pub(super) fn patience(&self, limits: &Limits) -> Patience {
-        Patience {
-            timeout: self.arguments.timeout.unwrap_or(limits.longest_answer),
-            longest_answer: limits.longest_answer,
-            retries: self.arguments.retries,
-            pause: self.arguments.pause.unwrap_or(limits.pause),
-            ways: Ways {
-                interchangeable_reads: limits.interchangeable_reads,
-                loopback: limits
-                    .functions
-                    .contains(&FunctionCode::Diagnostics)
-                    .then_some(match limits.loopback_data {
-                        LoopbackData::Any => QueryData::Any,
-                        LoopbackData::Zero => QueryData::Zero,
-                    }),
-            },
-        }
+        manners(self.arguments).patience(limits)
     }
 
     /// Opens the port and returns a client on it.
@@ -84,51 +72,92 @@ impl<'a> LinePlan<'a> {
 
     /// What was said of echoes.
     pub(super) fn echo(&self) -> Echo {
-        match self.arguments.echo {
-            EchoChoice::Auto => Echo::Auto,
-            EchoChoice::On => Echo::On,
-            EchoChoice::Off => Echo::Off,
-        }
+        echo(self.arguments)
     }
 
     /// The same with another way to take echoes.
     pub(super) fn open_with(&self, echo: Echo) -> Result<Client, CommandError> {
+        check_port(self.port())?;
         let clock: Arc<dyn Clock> = Arc::new(SystemClock::new());
-        let transport = self.transport(&clock)?;
-        if !self.arguments.settle.is_zero() {
-            clock.sleep(self.arguments.settle);
+        let plan = PortPlan {
+            port: self.port(),
+            settings: self.settings,
+            echo,
+            settle: self.arguments.settle,
+            wait: self.arguments.wait,
+        };
+        plan.open(&clock).map_err(|error| match error {
+            PortError::Open(error) => CommandError::Open(error),
+            PortError::Lost(error) => CommandError::Lost(error),
+        })
+    }
+}
+
+/// Whether a port is named that there can be.
+pub(super) fn check_port(port: &str) -> Result<(), CommandError> {
+    let is_tcp = port.starts_with("tcp://") || port.starts_with("rtu+tcp://");
+    let port = port.to_owned();
+    match port.as_str() {
+        "" => Err(CommandError::NoPort),
+        SIMULATED => Ok(()),
+        "sim" => Err(CommandError::UnknownSimulation { port }),
+        _ if port.starts_with(SIMULATED) => Err(CommandError::UnknownSimulation { port }),
+        _ if is_tcp => Err(CommandError::Tcp { port }),
+        _ => Ok(()),
+    }
+}
+
+/// How patient to be, as typed.
+pub(super) fn manners(arguments: &LineArguments) -> Manners {
+    Manners {
+        timeout: arguments.timeout,
+        retries: arguments.retries,
+        pause: arguments.pause,
+    }
+}
+
+/// What was said of echoes.
+pub(super) fn echo(arguments: &LineArguments) -> Echo {
+    match arguments.echo {
+        EchoChoice::Auto => Echo::Auto,
+        EchoChoice::On => Echo::On,
+        EchoChoice::Off => Echo::Off,
+    }
+}
+
+/// A port, checked, and how it is opened.
+pub(super) struct PortPlan<'a> {
+    pub(super) port: &'a str,
+    pub(super) settings: LineSettings,
+    pub(super) echo: Echo,
+    /// After it was opened.
+    pub(super) settle: Duration,
+    /// While another program holds it.
+    pub(super) wait: Duration,
+}
+
+impl PortPlan<'_> {
+    /// Opens the port and returns a client on it.
+    pub(super) fn open(&self, clock: &Arc<dyn Clock>) -> Result<Client, PortError> {
+        let clock = Arc::clone(clock);
+        let transport: Box<dyn Transport> = if self.port == SIMULATED {
+            Box::new(SimulatedLine::new(SEED, Arc::clone(&clock)))
+        } else {
+            let open = || Serial::open(self.port, self.settings);
+            Box::new(while_busy(&*clock, self.port, self.wait, open)?)
+        };
+        if !self.settle.is_zero() {
+            clock.sleep(self.settle);
         }
         let transport: Box<dyn Transport> = if log::log_enabled!(log::Level::Trace) {
             Box::new(Traced::new(transport, Arc::clone(&clock)))
         } else {
             transport
         };
-        info!("opened {}", self.name());
+        info!("opened {} at {}", self.port, self.settings);
         let line = Line::new(transport, clock, Timing::Paced(self.settings))?;
-        let line = line.settling(self.arguments.settle);
-        Ok(Client::new(line, echo))
-    }
-
-    fn transport(&self, clock: &Arc<dyn Clock>) -> Result<Box<dyn Transport>, CommandError> {
-        let port = self.port();
-        if port.is_empty() {
-            return Err(CommandError::NoPort);
-        }
-        if port == "sim:" {
-            return Ok(Box::new(SimulatedLine::new(SEED, Arc::clone(clock))));
-        }
-        if port == "sim" || port.starts_with("sim:") {
-            let port = port.to_owned();
-            return Err(CommandError::UnknownSimulation { port });
-        }
-        if port.starts_with("tcp://") || port.starts_with("rtu+tcp://") {
-            let port = port.to_owned();
-            return Err(CommandError::Tcp { port });
-        }
-        let serial = while_busy(&**clock, port, self.arguments.wait, || {
-            Serial::open(port, self.settings)
-        });
-        Ok(Box::new(serial?))
+        let line = line.settling(self.settle);
+        Ok(Client::new(line, self.echo))
     }
 }
 

@@ -17,6 +17,7 @@ use crate::codec::ExceptionCode;
 use crate::output::escape;
 use crate::readings::Trouble;
 use crate::transport::listen::ListenError;
+use crate::words::counted;
 
 /// Prints what there is to say to a command line that nothing comes of: help on stdout, errors on
 /// stderr.
@@ -179,6 +180,12 @@ pub(super) fn untried_units(count: usize) {
     say(format_args!("error: {count} more {units} {were} not tried"));
 }
 
+/// Prints that rows are empty because nobody was asked.
+pub(super) fn untried_rows(count: usize, why: &str) {
+    let meters = counted(count as u64, "meter was", "meters were");
+    say(format_args!("error: {why}: {meters} not asked"));
+}
+
 /// Prints something that is to be known before something is done.
 pub(super) fn warning(text: &str) {
     say(format_args!("warning: {text}"));
@@ -242,6 +249,10 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::NoTimeZone { .. }
         | CommandError::OneAddress { .. }
         | CommandError::ColumnClash { .. }
+        | CommandError::Site(_)
+        | CommandError::NoInterval { .. }
+        | CommandError::Path { .. }
+        | CommandError::Columns { .. }
         | CommandError::Function { .. }
         | CommandError::NoEffect { .. }
         | CommandError::NoIdentities { .. }

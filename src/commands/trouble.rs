@@ -9,6 +9,8 @@ const NAMED: usize = 3;
 
 /// Where, what and how often something was tried.
 pub(super) struct Place<'a> {
+    /// The meter, where it takes its name to tell which one it is; else empty.
+    pub(super) meter: &'a str,
     /// `sim: at 9600 8N1`.
     pub(super) line: &'a str,
     /// The unit.
@@ -33,7 +35,10 @@ fn is_named(point: &Point) -> bool {
 
 /// One line about it.
 pub(super) fn text(place: &Place<'_>, trouble: &Trouble) -> String {
-    let at = format!("unit {} on {}", place.unit, place.line);
+    let mut at = format!("unit {} on {}", place.unit, place.line);
+    if !place.meter.is_empty() {
+        at = format!("{}, {at}", place.meter);
+    }
     match trouble {
         Trouble::Unread {
             read,

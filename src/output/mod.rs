@@ -11,6 +11,7 @@ pub mod influx;
 pub mod json;
 pub mod loopback;
 pub mod operations;
+pub mod polling;
 pub mod profile;
 pub mod status;
 mod stream;

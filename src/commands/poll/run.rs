@@ -1,0 +1,392 @@
+//! A poll under way: a thread a line, and one place where what they read comes together.
+
+use std::io::{self, IsTerminal};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::thread;
+use std::time::Duration;
+
+use log::info;
+
+use super::outlets::{OnStdout, Outlets};
+use super::screen::Screen;
+use crate::commands::open_line::PortPlan;
+use crate::commands::report::{self, Report};
+use crate::commands::signals::Stop;
+use crate::commands::trouble::Place;
+use crate::commands::{CommandError, ExitCode};
+use crate::output::polling::{Board, summary};
+use crate::polling::{
+    Cycle, Effort, Event, Job, LineLoop, News, PortError, Site, SiteLine, Spared, Tally, Watch,
+};
+use crate::readings::Fault;
+use crate::transport::Clock;
+
+/// The table is drawn anew so often.
+const TICK: Duration = Duration::from_millis(250);
+
+/// Rows wait so long for others to be written with, where a line is never idle.
+const LONGEST_WAIT: Duration = Duration::from_secs(1);
+
+/// How long it goes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Course {
+    /// Until a signal comes.
+    Endless,
+    /// Everything is read once.
+    Once {
+        /// How long that may take.
+        within: Option<Duration>,
+    },
+}
+
+/// What is known of the port of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum PortState {
+    /// Nothing yet.
+    Unknown,
+    /// It is open.
+    Open,
+    /// It is not, and that was told.
+    Missing,
+}
+
+/// A poll under way.
+pub(super) struct Run<'a> {
+    site: &'a Site,
+    outlets: Outlets<'a>,
+    clock: &'a Arc<dyn Clock>,
+    stop: &'a Stop,
+    report: &'a mut Report,
+    ports: Vec<PortState>,
+    watch: Watch,
+    tally: Tally,
+    board: Board,
+    screen: Option<Screen>,
+    /// Readings there are, and what was in the way of the others, each once.
+    delivered: usize,
+    faults: Vec<Fault>,
+    /// Rows of meters that were not asked, for want of a port and of time.
+    untried: (usize, usize),
+    flushed: Duration,
+    has_rows: bool,
+}
+
+/// What the threads of all lines share.
+struct Shared<'a> {
+    site: &'a Site,
+    clock: Arc<dyn Clock>,
+    course: Course,
+    /// Raised by a signal.
+    stop: Arc<AtomicBool>,
+    /// Raised when rows have nowhere to go.
+    halt: AtomicBool,
+    /// Raised when the time is over: no answer is waited for any longer than it must be.
+    hurry: Arc<AtomicBool>,
+}
+
+impl<'a> Run<'a> {
+    /// One that has not begun.
+    pub(super) fn new(
+        site: &'a Site,
+        outlets: Outlets<'a>,
+        clock: &'a Arc<dyn Clock>,
+        stop: &'a Stop,
+        report: &'a mut Report,
+    ) -> Self {
+        Self {
+            site,
+            outlets,
+            clock,
+            stop,
+            report,
+            ports: vec![PortState::Unknown; site.lines.len()],
+            watch: Watch::default(),
+            tally: Tally::default(),
+            board: Board::new(site),
+            screen: None,
+            delivered: 0,
+            faults: Vec::new(),
+            untried: (0, 0),
+            flushed: clock.now(),
+            has_rows: false,
+        }
+    }
+
+    /// Polls to the end.
+    pub(super) fn all(
+        mut self,
+        course: Course,
+        on_stdout: OnStdout,
+    ) -> Result<ExitCode, CommandError> {
+        if on_stdout == OnStdout::Table {
+            self.screen = Some(Screen::new());
+        }
+        let shared = Shared {
+            site: self.site,
+            clock: Arc::clone(self.clock),
+            course,
+            stop: self.stop.flag(),
+            halt: AtomicBool::new(false),
+            hurry: Arc::default(),
+        };
+        let result = thread::scope(|scope| {
+            let (sender, receiver) = mpsc::channel();
+            for (index, line) in self.site.lines.iter().enumerate() {
+                let (shared, sender) = (&shared, sender.clone());
+                scope.spawn(move || shared.poll(index, line, &sender));
+            }
+            // Only the lines hold it: when the last of them has ended, so has the channel.
+            drop(sender);
+            let result = self.receive(&shared, &receiver);
+            shared.halt.store(true, Ordering::Relaxed);
+            result
+        });
+        if let Some(screen) = &mut self.screen {
+            screen.draw(&self.board, self.clock.utc_now());
+            screen.leave();
+        }
+        let written = self.outlets.finish();
+        self.conclude(course);
+        result.and(written)?;
+        Ok(ExitCode::of(self.delivered, &self.faults))
+    }
+
+    /// Takes what the lines say, until all have ended.
+    fn receive(
+        &mut self,
+        shared: &Shared<'_>,
+        events: &Receiver<(usize, Event)>,
+    ) -> Result<(), CommandError> {
+        let start = self.clock.now();
+        loop {
+            match events.recv_timeout(TICK) {
+                Ok((line, event)) => self.event(shared, line, event)?,
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            }
+            let now = self.clock.now();
+            if let Course::Once { within: Some(time) } = shared.course
+                && now.saturating_sub(start) >= time
+            {
+                shared.hurry.store(true, Ordering::Relaxed);
+            }
+            let is_endless = shared.course == Course::Endless;
+            if is_endless && now.saturating_sub(self.flushed) >= LONGEST_WAIT {
+                self.flush();
+            }
+            if let Some(screen) = &mut self.screen {
+                screen.draw_at_times(&self.board, now, self.clock.utc_now());
+            }
+        }
+    }
+
+    fn event(
+        &mut self,
+        shared: &Shared<'_>,
+        line: usize,
+        event: Event,
+    ) -> Result<(), CommandError> {
+        match event {
+            Event::Cycle(cycle) => self.cycle(shared, &cycle)?,
+            Event::Idle => self.flush(),
+            Event::Open => {
+                let state = self.ports.get_mut(line);
+                let before = state.map(|state| std::mem::replace(state, PortState::Open));
+                if before == Some(PortState::Missing) {
+                    let place = self.site.lines.get(line).map(place).unwrap_or_default();
+                    self.say(|report| report.remark(&format!("{place}: the port is there now")));
+                }
+            }
+            Event::NoPort(error) => self.no_port(shared, line, error)?,
+        }
+        Ok(())
+    }
+
+    /// A port that is not there is told once. Where none of them is at the start there is nothing to
+    /// go on for.
+    fn no_port(
+        &mut self,
+        shared: &Shared<'_>,
+        line: usize,
+        error: PortError,
+    ) -> Result<(), CommandError> {
+        let Some(state) = self.ports.get_mut(line) else {
+            return Ok(());
+        };
+        let before = std::mem::replace(state, PortState::Missing);
+        let error = match error {
+            PortError::Open(error) => CommandError::Open(error),
+            PortError::Lost(error) => CommandError::Lost(error),
+        };
+        let is_hopeless = self.ports.iter().all(|port| *port == PortState::Missing);
+        if before == PortState::Unknown && is_hopeless && shared.course == Course::Endless {
+            return Err(error);
+        }
+        if before != PortState::Missing {
+            self.say(|report| {
+                let _ = report.error(&error);
+            });
+        }
+        Ok(())
+    }
+
+    /// One more row.
+    fn cycle(&mut self, shared: &Shared<'_>, cycle: &Cycle) -> Result<(), CommandError> {
+        let Some(job) = self.site.jobs.get(cycle.job) else {
+            return Ok(());
+        };
+        self.has_rows = true;
+        self.tally.add(cycle);
+        self.board.heed(cycle);
+        self.delivered += cycle.row.readings.iter().filter(|r| r.is_ok()).count();
+        for fault in cycle.row.faults() {
+            if !self.faults.contains(&fault) {
+                self.faults.push(fault);
+            }
+        }
+        if shared.course != Course::Endless {
+            match cycle.effort {
+                Effort::Spared(Spared::PortAway) => self.untried.0 += 1,
+                Effort::Spared(Spared::Deadline) => self.untried.1 += 1,
+                Effort::Spared(Spared::Silent) | Effort::Asked(_) => {}
+            }
+        }
+        info!("{}", told(job, cycle));
+        self.tell(job, cycle);
+        self.outlets.row(cycle)
+    }
+
+    /// Tells what is worth telling of a row.
+    fn tell(&mut self, job: &Job, cycle: &Cycle) {
+        let news = self.watch.heed(cycle);
+        if news.is_empty() {
+            return;
+        }
+        let Some(line) = self.site.lines.get(job.subject.line) else {
+            return;
+        };
+        let line = place(line);
+        let points = job.all_points();
+        let attempts = match cycle.effort {
+            Effort::Asked(attempts) => attempts,
+            Effort::Spared(_) => 0,
+        };
+        let place = Place {
+            meter: &job.subject.name,
+            line: &line,
+            unit: job.subject.unit,
+            points: &points,
+            attempts,
+        };
+        let subject = format!("{} on {line}", job.subject);
+        self.say(|report| {
+            for news in news {
+                match news {
+                    News::Missing => {
+                        for trouble in &cycle.troubles {
+                            report.trouble(&place, trouble);
+                        }
+                    }
+                    News::Back { since, rows } => {
+                        let rows = crate::words::counted(rows, "row", "rows");
+                        let since = since.strftime("%Y-%m-%d %H:%M:%S UTC");
+                        report.remark(&format!(
+                            "{subject}: all is there again; {rows} lacked some since {since}"
+                        ));
+                    }
+                    News::Missed { slots } => {
+                        let slots = crate::words::counted(slots, "slot was", "slots were");
+                        report::warning(&format!(
+                            "{subject}: {slots} not begun, for the line was busy: the interval is \
+                             too short"
+                        ));
+                    }
+                    News::InTime { slots } => {
+                        let slots = crate::words::counted(slots, "slot was", "slots were");
+                        report.remark(&format!("{subject}: in time again; {slots} not begun"));
+                    }
+                }
+            }
+        });
+    }
+
+    /// Says something where the table is.
+    fn say(&mut self, say: impl FnOnce(&mut Report)) {
+        if let Some(screen) = &mut self.screen {
+            screen.erase();
+        }
+        say(self.report);
+    }
+
+    fn flush(&mut self) {
+        self.flushed = self.clock.now();
+        if let Some(screen) = &mut self.screen
+            && self.outlets.has_rows()
+        {
+            screen.erase();
+        }
+        self.outlets.flush(self.report);
+    }
+
+    /// Says what all of it came to.
+    fn conclude(&mut self, course: Course) {
+        let (away, late) = self.untried;
+        if away > 0 {
+            report::untried_rows(away, "the port is away");
+        }
+        if late > 0 {
+            report::untried_rows(late, "the deadline has passed");
+        }
+        let is_wanted = io::stderr().is_terminal() || log::log_enabled!(log::Level::Info);
+        if course == Course::Endless && is_wanted && self.has_rows {
+            for line in summary(self.site, &self.tally).lines() {
+                self.report.remark(line);
+            }
+        }
+    }
+}
+
+impl Shared<'_> {
+    /// Polls one line to the end.
+    fn poll(&self, index: usize, line: &SiteLine, events: &Sender<(usize, Event)>) {
+        let plan = PortPlan {
+            port: &line.port,
+            settings: line.settings,
+            echo: line.echo,
+            settle: line.settle,
+            wait: line.wait,
+        };
+        let mut open = || {
+            let mut client = plan.open(&self.clock)?;
+            client.stop_when(Arc::clone(&self.hurry));
+            Ok(client)
+        };
+        let stop = || self.stop.load(Ordering::Relaxed) || self.halt.load(Ordering::Relaxed);
+        // Where nobody listens any more, `halt` ends it.
+        let mut deliver = |event| drop(events.send((index, event)));
+        let line = LineLoop::new(self.site.jobs_on(index), &*self.clock, &mut open);
+        match self.course {
+            Course::Endless => line.endless(&stop, &mut deliver),
+            Course::Once { within } => line.once(within, &stop, &mut deliver),
+        }
+    }
+}
+
+/// `/dev/ttyUSB0 at 9600 8N1`.
+fn place(line: &SiteLine) -> String {
+    format!("{} at {}", line.port, line.settings)
+}
+
+/// One line about a row, for those who want to see each.
+fn told(job: &Job, cycle: &Cycle) -> String {
+    let time = cycle.slot.time.strftime("%Y-%m-%d %H:%M:%S UTC");
+    let status = crate::output::status(cycle.row.worst());
+    let took = cycle.took.as_millis();
+    let late = cycle.slot.late.as_millis();
+    format!(
+        "{}, slot of {time}: {status}, {late} ms late, took {took} ms",
+        job.subject
+    )
+}
