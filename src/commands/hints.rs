@@ -31,38 +31,6 @@ pub(super) fn hint(error: &CommandError) -> Option<String> {
         CommandError::Select(error) | CommandError::Assign(AssignError::Select(error)) => {
             return select_hint(error);
         }
-        CommandError::Assign(AssignError::NoValue { .. } | AssignError::Nothing) => {
-            "values are written ct_primary=200 or 0x1028=500"
-        }
-        CommandError::Assign(AssignError::Several { .. }) => {
-            "name each point with its value, such as tariff_1_cost=1 tariff_2_cost=1"
-        }
-        CommandError::Assign(AssignError::NotOne { .. }) => "name the points, each with its value",
-        CommandError::WritePlan(WritePlanError::Function { .. }) => {
-            "leave --function out: the meter's own is taken"
-        }
-        CommandError::WritePlan(WritePlanError::TooMany { .. }) => "write them in several calls",
-        CommandError::MovesFirst { .. } => "write what changes that last, or by itself",
-        CommandError::NeedsMeter { .. } => {
-            "give the register's own number, 0x and its digits, or leave --dry-run out"
-        }
-        CommandError::NeedsYes { .. } => "--yes says that it is meant",
-        CommandError::NoOperation { near, .. } if !near.is_empty() => return None,
-        CommandError::NoOperation { .. } => "`execute-operation --list` shows them",
-        CommandError::CarriesNothing { .. } => "leave --function out, or give 16",
-        CommandError::BroadcastRead { .. } => {
-            "give points and values, NAME=VALUE, or the name of one operation"
-        }
-        CommandError::BroadcastUnknown => "name the meter with --meter, or send it with --force",
-        CommandError::NotBroadcast { .. } => {
-            "--force sends it all the same; --verify-units shows which meters have taken it"
-        }
-        CommandError::BroadcastOnly { .. } => "`meterpoll broadcast` writes it",
-        CommandError::NoTimeZone { .. } => "set the variable TZ, to Europe/Berlin say",
-        CommandError::OneAddress { .. } => "give each meter its own, in calls of their own",
-        CommandError::NoMoment { .. } => {
-            "give now, or a date and time such as 2026-11-22T13:27:10.015"
-        }
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
@@ -119,9 +87,48 @@ pub(super) fn hint(error: &CommandError) -> Option<String> {
         CommandError::Append(error) | CommandError::Unwritten { error, .. } => {
             return append_hint(&error.problem).map(str::to_owned);
         }
-        _ => return None,
+        _ => return writing_hint(error).map(str::to_owned),
     };
     Some(text.to_owned())
+}
+
+/// What to try when nothing can be written.
+fn writing_hint(error: &CommandError) -> Option<&'static str> {
+    Some(match error {
+        CommandError::Assign(AssignError::NoValue { .. } | AssignError::Nothing) => {
+            "values are written ct_primary=200 or 0x1028=500"
+        }
+        CommandError::Assign(AssignError::Several { .. }) => {
+            "name each point with its value, such as tariff_1_cost=1 tariff_2_cost=1"
+        }
+        CommandError::Assign(AssignError::NotOne { .. }) => "name the points, each with its value",
+        CommandError::WritePlan(WritePlanError::Function { .. }) => {
+            "leave --function out: the meter's own is taken"
+        }
+        CommandError::WritePlan(WritePlanError::TooMany { .. }) => "write them in several calls",
+        CommandError::MovesFirst { .. } => "write what changes that last, or by itself",
+        CommandError::NeedsMeter { .. } => {
+            "give the register's own number, 0x and its digits, or leave --dry-run out"
+        }
+        CommandError::NeedsYes { .. } => "--yes says that it is meant",
+        CommandError::NoOperation { near, .. } if !near.is_empty() => return None,
+        CommandError::NoOperation { .. } => "`execute-operation --list` shows them",
+        CommandError::CarriesNothing { .. } => "leave --function out, or give 16",
+        CommandError::BroadcastRead { .. } => {
+            "give points and values, NAME=VALUE, or the name of one operation"
+        }
+        CommandError::BroadcastUnknown => "name the meter with --meter, or send it with --force",
+        CommandError::NotBroadcast { .. } => {
+            "--force sends it all the same; --verify-units shows which meters have taken it"
+        }
+        CommandError::BroadcastOnly { .. } => "`meterpoll broadcast` writes it",
+        CommandError::NoTimeZone { .. } => "set the variable TZ, to Europe/Berlin say",
+        CommandError::OneAddress { .. } => "give each meter its own, in calls of their own",
+        CommandError::NoMoment { .. } => {
+            "give now, or a date and time such as 2026-11-22T13:27:10.015"
+        }
+        _ => return None,
+    })
 }
 
 fn select_hint(error: &SelectError) -> Option<String> {
