@@ -66,14 +66,6 @@ pub(super) fn hint(error: &CommandError) -> Option<String> {
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
-        CommandError::NoInterval { .. } => {
-            "give an interval such as --every 1m, in a site file every = \"1m\"; --once needs none"
-        }
-        CommandError::Columns { .. } => {
-            "give each an output of its own, put {meter} into its path, or take another layout or \
-             format"
-        }
-        CommandError::Path { .. } => "a % is written %%",
         CommandError::Function { code: 7 | 8, .. } => {
             "without --meter it is sent all the same, and the meter may refuse it"
         }
@@ -119,9 +111,23 @@ pub(super) fn hint(error: &CommandError) -> Option<String> {
         CommandError::Append(error) | CommandError::Unwritten { error, .. } => {
             return append_hint(&error.problem).map(str::to_owned);
         }
-        _ => return None,
+        _ => return poll_hint(error).map(str::to_owned),
     };
     Some(text.to_owned())
+}
+
+const fn poll_hint(error: &CommandError) -> Option<&'static str> {
+    Some(match error {
+        CommandError::NoInterval { .. } => {
+            "give an interval such as --every 1m, in a site file every = \"1m\"; --once needs none"
+        }
+        CommandError::Columns { .. } => {
+            "give each an output of its own, put {meter} into its path, or take another layout or \
+             format"
+        }
+        CommandError::Path { .. } => "a % is written %%",
+        _ => return None,
+    })
 }
 
 fn select_hint(error: &SelectError) -> Option<String> {
