@@ -74,7 +74,7 @@ fn whatever_else_comes_in_place_of_the_answer_leaves_the_outcome_unknown() {
         ),
         (
             answer(&set(0x1029, 500)),
-            "the unit answered something else: an answer to function 06 (Write Single Register)",
+            "the unit answered something else: 0x1029 written, and 0x1028 was sent",
         ),
         (
             answer(&block(0x1028, &[500])),
@@ -163,6 +163,21 @@ fn a_busy_unit_is_written_to_again_and_heard_out_from_the_second_time_on() {
     assert!(sent[1..].iter().all(|again| again.frame == sent[1].frame));
     let counters = bench.client.counters(unit(17));
     assert_eq!((counters.busy, counters.retries), (3, 3));
+}
+
+#[test]
+fn a_copy_of_busy_behind_the_second_request_does_not_have_it_sent_again() {
+    let mut bench = known();
+    let write = set(0x1028, 500);
+    let busy = refusal(&write, 6);
+    // A repeater brings the first answer once more 150 ms later, when the write is out again.
+    bench
+        .line
+        .answer(vec![(ms(10), busy.clone()), (ms(160), busy)]);
+    bench.line.answer(vec![(ms(300), answer(&write))]);
+    let result = bench.client.write(unit(17), &write, Patience::default());
+    assert_eq!(outcome(&result), "done");
+    assert_eq!(bench.frames(), 1 + 2);
 }
 
 #[test]

@@ -67,7 +67,7 @@ fn the_others_have_a_register_for_each() {
 fn the_list_tells_what_is_hazardous() {
     Program::new("execute-operation --meter em21 --list")
         .stdout(
-            "OPERATION         NUMBER    TAKES  HAZARD\n\
+            "OPERATION         TOLD BY   TAKES  HAZARD\n\
              reset_all_meters  0x3000=1         sets all energy counters to zero\n",
         )
         .run();
@@ -139,7 +139,7 @@ fn an_operation_that_is_not_confirmed_is_not_told_again() {
         (Vec::new(), "no answer within 200ms"),
         (
             other,
-            "the unit answered something else: an answer to function 05 (Write Single Coil)",
+            "the unit answered something else: 0x000F written, and 0x000E was sent",
         ),
     ];
     thread::scope(|scope| {

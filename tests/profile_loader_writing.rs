@@ -131,7 +131,7 @@ fn a_hazard_is_in_words() {
 fn steps_and_lists_are_of_integers() {
     refused(
         &point("f32", "read-write", "step = 5"),
-        "m.toml:10: a.step: only an integer has a step",
+        "m.toml:10: a.step: only an integer or a time has a step",
     );
     refused(
         &point("ascii/4", "write", "allowed = [5]"),

@@ -111,7 +111,7 @@ fn an_answer_that_is_lost_or_spoilt_leaves_the_outcome_unknown_and_ends_it() {
         ),
         (
             obeyed(|answer| sealed(&[17, 6, 0, 0x11, answer[4], answer[5]])),
-            "the unit answered something else: an answer to function 06 (Write Single Register)",
+            "the unit answered something else: 0x0011 written, and 0x0010 was sent",
         ),
         (
             obeyed(|answer| sealed(&[18, 6, 0, 0x10, answer[4], answer[5]])),

@@ -27,12 +27,12 @@ fn a_value_that_the_point_cannot_have() {
     for (what, problem) in [
         (
             "ct_primary=99999",
-            "ct_primary: 99999 is not within 0 to 65535",
+            "ct_primary: 99999 is not within 0 to 12000",
         ),
-        ("ct_primary=-1", "ct_primary: -1 is not within 0 to 65535"),
+        ("ct_primary=-1", "ct_primary: -1 is not within 0 to 12000"),
         (
             "ct_primary=200.5",
-            "ct_primary: 200.5 is between two steps: the nearest are 200 and 201",
+            "ct_primary: 200.5 is no multiple of 5: the nearest are 200 and 205",
         ),
         (
             "ct_primary=",

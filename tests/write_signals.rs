@@ -53,7 +53,7 @@ fn a_write_that_is_not_answered_yet_ends_as_unknown() {
         assert_eq!((end.code, end.signal), (Some(6), None), "{end:?}");
         let lines: Vec<&str> = end.stderr.lines().collect();
         let begin = "error: unit 17 on PORT at 115200 8N1, 0x0010: outcome unknown, it may be \
-                     written or not: no answer within ";
+                     written or not: no answer before the program was stopped";
         assert!(lines[0].starts_with(begin), "{end:?}");
         assert_eq!(
             lines[2],
@@ -141,8 +141,8 @@ fn a_point_that_is_half_written_is_told_as_such() {
         end.stderr,
         "warning: ct_ratio goes in 2 requests, low word first, for function 6 writes one register at a \
          time: in between the meter holds half of it\n\
-         error: unit 17 on PORT at 115200 8N1, ct_ratio: the first of its registers are written, the \
-         others are not known to be\n\
+         error: unit 17 on PORT at 115200 8N1, ct_ratio: half of its registers are written, and \
+         then:\n\
          error: unit 17 on PORT at 115200 8N1, ct_ratio: not sent: the program was stopped\n\
          hint: `meterpoll read-registers -p PORT -b 115200 -a 17 --meter em24 ct_ratio` shows what \
          the meter holds now\n"

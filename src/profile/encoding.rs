@@ -139,10 +139,6 @@ impl Point {
     fn raw_of(&self, value: &str, scales: &Scales) -> Result<Raw, EncodeError> {
         let trimmed = value.trim();
         match self.kind {
-            // What does not print would be shown as something else.
-            RegisterType::Ascii(_) if value.contains(|c: char| c.is_control()) => {
-                Err(self.no_such(value))
-            }
             RegisterType::Ascii(_) => Ok(Raw::Text(value.to_owned())),
             RegisterType::Letter => Ok(Raw::Text(trimmed.to_owned())),
             RegisterType::Time => self.parsed::<civil::Time>(trimmed).map(Raw::Time),
@@ -213,7 +209,7 @@ impl Point {
     pub fn expected(&self) -> String {
         match self.kind {
             RegisterType::Ascii(most) => {
-                format!("text of at most {most} characters, all of them ASCII that prints")
+                format!("text of at most {most} characters, all of them ASCII")
             }
             RegisterType::Letter => "a letter from A to Z".to_owned(),
             RegisterType::Time => "a time of day such as 23:59:59.999".to_owned(),

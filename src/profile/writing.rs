@@ -204,6 +204,9 @@ pub enum NotTaken {
         /// The distance of two times.
         step: u16,
     },
+    /// A text with what no display shows.
+    #[error("there are characters in it that do not print")]
+    Unprintable,
     /// None of the few it takes.
     #[error("{found} is none of {}", .allowed.join(", "))]
     Allowed {
@@ -245,7 +248,10 @@ impl Point {
             Ok(Raw::Integer(raw)) => raw,
             Ok(Raw::Word(word)) => word.into(),
             Ok(Raw::Time(found)) => return self.takes_time(found),
-            // Texts and dates have no limits but those of their type.
+            Ok(Raw::Text(found)) if found.contains(|c: char| c.is_control()) => {
+                return Err(NotTaken::Unprintable);
+            }
+            // Other texts and dates have no limits but those of their type.
             _ => return Ok(()),
         };
         self.takes_raw(raw)
