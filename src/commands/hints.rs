@@ -34,14 +34,6 @@ pub(super) fn hint(error: &CommandError) -> Option<String> {
         CommandError::ColumnClash { .. } => {
             "ask for it once, or use --layout long or another --format"
         }
-        CommandError::NoInterval { .. } => {
-            "give an interval such as --every 1m, in a site file every = \"1m\"; --once needs none"
-        }
-        CommandError::Columns { .. } => {
-            "give each an output of its own, put {meter} into its path, or take another layout or \
-             format"
-        }
-        CommandError::Path { .. } => "a % is written %%",
         CommandError::Function { code: 7 | 8, .. } => {
             "without --meter it is sent all the same, and the meter may refuse it"
         }
@@ -87,7 +79,10 @@ pub(super) fn hint(error: &CommandError) -> Option<String> {
         CommandError::Append(error) | CommandError::Unwritten { error, .. } => {
             return append_hint(&error.problem).map(str::to_owned);
         }
-        _ => return writing_hint(error).map(str::to_owned),
+        _ => {
+            let text = poll_hint(error).or_else(|| writing_hint(error));
+            return text.map(str::to_owned);
+        }
     };
     Some(text.to_owned())
 }
@@ -127,6 +122,20 @@ fn writing_hint(error: &CommandError) -> Option<&'static str> {
         CommandError::NoMoment { .. } => {
             "give now, or a date and time such as 2026-11-22T13:27:10.015"
         }
+        _ => return None,
+    })
+}
+
+const fn poll_hint(error: &CommandError) -> Option<&'static str> {
+    Some(match error {
+        CommandError::NoInterval { .. } => {
+            "give an interval such as --every 1m, in a site file every = \"1m\"; --once needs none"
+        }
+        CommandError::Columns { .. } => {
+            "give each an output of its own, put {meter} into its path, or take another layout or \
+             format"
+        }
+        CommandError::Path { .. } => "a % is written %%",
         _ => return None,
     })
 }
