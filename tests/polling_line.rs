@@ -297,6 +297,38 @@ fn meters_that_are_due_together_stay_so_and_a_silent_one_goes_last() {
     assert!(rows[2..].iter().all(|cycle| cycle.slot.late < T / 2));
 }
 
+/// A wall clock that is set on by microseconds all the time.
+struct HurriedClock(Arc<FakeClock>);
+
+impl Clock for HurriedClock {
+    fn now(&self) -> Duration {
+        self.0.now()
+    }
+
+    fn sleep(&self, time: Duration) {
+        self.0.sleep(time);
+    }
+
+    fn utc_now(&self) -> Timestamp {
+        self.0.utc_now() + self.0.now() / 50_000
+    }
+}
+
+#[test]
+fn meters_that_are_due_together_are_read_in_their_order_by_a_clock_that_is_set_on_as_well() {
+    let clock = Arc::new(HurriedClock(noon()));
+    let jobs = [
+        job("em24", 1, &["frequency"], seconds(10)),
+        job("pm290", 2, &["frequency"], seconds(10)),
+        job("pqm", 17, &["frequency"], seconds(10)),
+    ];
+    let mut open = || Ok(switched(&clock, vec![]));
+    let cycles = polled(&jobs, &*clock, &mut open, seconds(1000));
+    let order: Vec<usize> = cycles.iter().map(|cycle| cycle.job).collect();
+    let expected: Vec<usize> = (0..order.len()).map(|index| index % 3).collect();
+    assert_eq!(order, expected);
+}
+
 /// The rows of one run over everything.
 fn once(within: Option<Duration>, off: &[u8]) -> (Vec<(Option<Fault>, &'static str)>, Duration) {
     let clock = noon();

@@ -23,6 +23,10 @@ pub const DEAD: u32 = 3;
 /// A wait is cut into pieces of this length, so that it can be ended.
 const PIECE: Duration = Duration::from_millis(100);
 
+/// Slots no further apart are due together: a wall clock that is set on moves those of one meter
+/// before those of another by microseconds.
+const TOGETHER: Duration = Duration::from_millis(1);
+
 /// Why a line has no port.
 #[derive(Debug, Error)]
 pub enum PortError {
@@ -170,10 +174,12 @@ impl<'a> LineLoop<'a> {
         let mut is_idle = true;
         while !stop() {
             let now = self.clock.now();
+            let earliest = jobs.iter().map(|(_, _, schedule)| schedule.next()).min();
+            let together = earliest.unwrap_or_default().saturating_add(TOGETHER);
             let first = jobs.iter_mut().min_by_key(|(index, job, schedule)| {
                 let is_silent = self.silences.contains_key(&job.subject.unit);
                 // What is not due yet is not kept waiting by anybody.
-                (schedule.next(), is_silent, *index)
+                (schedule.next().max(together), is_silent, *index)
             });
             let Some((index, job, schedule)) = first else {
                 break;

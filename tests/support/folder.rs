@@ -41,7 +41,12 @@ impl Folder {
 
     /// The names in it, sorted.
     pub(crate) fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(&self.0).expect("a readable folder");
+        self.names_in("")
+    }
+
+    /// The names in a folder in it, sorted.
+    pub(crate) fn names_in(&self, folder: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.0.join(folder)).expect("a readable folder");
         let names = entries.map(|entry| entry.expect("an entry").file_name());
         let mut names: Vec<String> = names
             .map(|name| name.into_string().expect("a name of text"))
