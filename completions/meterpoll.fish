@@ -220,7 +220,7 @@ complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l config -d '
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s a -l unit -d 'The units to read: 17, or 1,2,5-9; --unit-id and --slave mean the same' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l meter -d 'The meter: a name that `meters list` shows, or a profile file' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l every -d 'How often, from 10ms to 24h: on round times in UTC, so that 15m is at :00, :15, :30 and :45; what does not divide a day counts from 1970-01-01' -r
-complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l deadline -d 'How long --once may take in all; what it does not come to is missing [default: the shortest interval, where there is one]' -r
+complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -l deadline -d 'How long --once may take in all; what it does not come to is missing [default: the longest interval, where there is one]' -r
 complete -c meterpoll -n "__fish_meterpoll_using_subcommand poll" -s f -l format -d 'How rows are written [default: csv; on a terminal, a table of the last values in place of rows]' -r -f -a "csv\t'Comma-separated values with a header'
 jsonl\t'One object a line, one a reading'
 influx\t'Influx line protocol'"

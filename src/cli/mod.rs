@@ -174,7 +174,7 @@ pub enum Command {
     /// costs the others little, and is read again when it answers; so is a port that was lost. Errors
     /// are told once, and again when they are over.
     ///
-    /// SIGINT, SIGTERM and SIGHUP end it after the row in hand.
+    /// SIGINT and SIGTERM end it after the row in hand; so does SIGHUP where there is a terminal.
     ///
     /// With --once it ends with 0 when everything was read, and with 1 when some was; when nothing
     /// was, with the code of the cause.

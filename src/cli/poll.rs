@@ -86,7 +86,7 @@ pub struct Poll {
     /// Check everything, print what would be read when and how long that takes, and open nothing
     #[arg(long)]
     pub check: bool,
-    /// How long --once may take in all; what it does not come to is missing [default: the shortest
+    /// How long --once may take in all; what it does not come to is missing [default: the longest
     /// interval, where there is one]
     #[arg(long, value_name = "TIME", value_parser = timeout, requires = "once")]
     pub deadline: Option<Duration>,

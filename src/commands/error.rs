@@ -211,9 +211,7 @@ pub enum CommandError {
         problem: PathError,
     },
     /// Rows with different columns in one file of wide CSV.
-    #[error(
-        "{first} and {second} have different columns, and both would go to {place} as wide CSV"
-    )]
+    #[error("{first} and {second} have different columns, and both would go to {place}")]
     Columns {
         /// What has some.
         first: String,
@@ -221,6 +219,14 @@ pub enum CommandError {
         second: String,
         /// The file, or stdout.
         place: String,
+    },
+    /// What is polled would get in its own way.
+    #[error("{}{problem}", .file.as_ref().map(|file| format!("{file}: ")).unwrap_or_default())]
+    Clash {
+        /// The site file, where it is one.
+        file: Option<String>,
+        /// What does.
+        problem: String,
     },
     /// A meter whose profile says nothing that could be tested.
     #[error("the profile of {meter} has no [[identities]] that could be tested")]

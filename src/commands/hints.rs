@@ -128,6 +128,9 @@ fn writing_hint(error: &CommandError) -> Option<&'static str> {
 
 const fn poll_hint(error: &CommandError) -> Option<&'static str> {
     Some(match error {
+        CommandError::Clash { .. } => {
+            "each port is one line with meters on it, and each file belongs to one output"
+        }
         CommandError::NoInterval { .. } => {
             "give an interval such as --every 1m, in a site file every = \"1m\"; --once needs none"
         }

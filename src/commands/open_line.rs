@@ -21,7 +21,7 @@ use crate::transport::{
 const TRY_AGAIN: Duration = Duration::from_millis(50);
 
 /// How the simulated line is named.
-const SIMULATED: &str = "sim:";
+pub(super) const SIMULATED: &str = "sim:";
 
 /// Values of the simulated line are the same in every run at the same time.
 const SEED: u64 = 17;
@@ -86,7 +86,7 @@ impl<'a> LinePlan<'a> {
             settle: self.arguments.settle,
             wait: self.arguments.wait,
         };
-        plan.open(&clock).map_err(|error| match error {
+        plan.open(&clock, &|| false).map_err(|error| match error {
             PortError::Open(error) => CommandError::Open(error),
             PortError::Lost(error) => CommandError::Lost(error),
         })
@@ -137,17 +137,28 @@ pub(super) struct PortPlan<'a> {
 }
 
 impl PortPlan<'_> {
-    /// Opens the port and returns a client on it.
-    pub(super) fn open(&self, clock: &Arc<dyn Clock>) -> Result<Client, PortError> {
+    /// Opens the port and returns a client on it; waits for nothing any more once `is_over` says so.
+    pub(super) fn open(
+        &self,
+        clock: &Arc<dyn Clock>,
+        is_over: &dyn Fn() -> bool,
+    ) -> Result<Client, PortError> {
         let clock = Arc::clone(clock);
         let transport: Box<dyn Transport> = if self.port == SIMULATED {
             Box::new(SimulatedLine::new(SEED, Arc::clone(&clock)))
         } else {
             let open = || Serial::open(self.port, self.settings);
-            Box::new(while_busy(&*clock, self.port, self.wait, open)?)
+            Box::new(while_busy(&*clock, self.port, self.wait, is_over, open)?)
         };
-        if !self.settle.is_zero() {
-            clock.sleep(self.settle);
+        let settled = clock.now().saturating_add(self.settle);
+        while let Some(left) = settled
+            .checked_sub(clock.now())
+            .filter(|left| !left.is_zero())
+        {
+            if is_over() {
+                break;
+            }
+            clock.sleep(left.min(TRY_AGAIN));
         }
         let transport: Box<dyn Transport> = if log::log_enabled!(log::Level::Trace) {
             Box::new(Traced::new(transport, Arc::clone(&clock)))
@@ -182,18 +193,20 @@ pub(super) fn settings(
     }
 }
 
-/// Opens a port, again and again while another program holds it, at most for `wait`.
+/// Opens a port, again and again while another program holds it, at most for `wait`, and no
+/// longer once `is_over` says so.
 pub(super) fn while_busy<T>(
     clock: &dyn Clock,
     port: &str,
     wait: Duration,
+    is_over: &dyn Fn() -> bool,
     mut open: impl FnMut() -> Result<T, OpenError>,
 ) -> Result<T, OpenError> {
     let give_up = clock.now() + wait;
     let mut is_told = false;
     loop {
         match open() {
-            Err(OpenError::Busy { .. }) if clock.now() < give_up => {
+            Err(OpenError::Busy { .. }) if clock.now() < give_up && !is_over() => {
                 if !is_told {
                     info!("port {port} is in use, waiting for it");
                     is_told = true;

@@ -39,7 +39,10 @@ pub(super) fn run(arguments: &Poll, report: &mut Report) -> Result<ExitCode, Com
     }
     // Before anything is sent: where the rows cannot go, none are taken.
     let outlets = Outlets::open(&site, Arc::clone(&clock), on_stdout)?;
-    let stop = Stop::listen();
+    let stop = match course {
+        Course::Endless => Stop::listen_in_background(),
+        Course::Once { .. } => Stop::listen(),
+    };
     let run = Run::new(&site, outlets, &clock, &stop, report);
     let code = run.all(course, on_stdout)?;
     Ok(stop.requested().unwrap_or(code))
@@ -50,9 +53,9 @@ fn course(arguments: &Poll, site: &Site) -> Course {
         return Course::Endless;
     }
     let intervals = site.jobs.iter().filter_map(|job| job.every);
-    let shortest = intervals.min().map(crate::polling::Every::get);
+    let longest = intervals.max().map(crate::polling::Every::get);
     Course::Once {
-        within: arguments.deadline.or(shortest),
+        within: arguments.deadline.or(longest),
     }
 }
 

@@ -182,8 +182,10 @@ pub(super) fn untried_units(count: usize) {
 
 /// Prints that rows are empty because nobody was asked.
 pub(super) fn untried_rows(count: usize, why: &str) {
-    let meters = counted(count as u64, "meter was", "meters were");
-    say(format_args!("error: {why}: {meters} not asked"));
+    let rows = counted(count as u64, "row is", "rows are");
+    say(format_args!(
+        "error: {why}: {rows} of meters that were not asked"
+    ));
 }
 
 /// Prints something that is to be known before something is done.
@@ -256,6 +258,7 @@ const fn exit_code(error: &CommandError) -> ExitCode {
         | CommandError::Function { .. }
         | CommandError::NoEffect { .. }
         | CommandError::NoIdentities { .. }
+        | CommandError::Clash { .. }
         | CommandError::NoPort
         | CommandError::UnknownSimulation { .. }
         | CommandError::Find(_)

@@ -8,6 +8,7 @@
 //!
 //! SIGXFSZ ends nothing: what cannot be written is told as such.
 
+use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -37,18 +38,44 @@ enum Second {
     Waits,
 }
 
+/// What SIGHUP does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum HangUp {
+    /// It ends the program, after the row in hand.
+    Ends,
+    /// Nothing.
+    Passes,
+}
+
 impl Stop {
     /// Listens from now on. A signal that cannot be listened to ends the program as ever.
     pub(super) fn listen() -> Self {
-        Self::listening(Second::Ends)
+        Self::listening(Second::Ends, HangUp::Ends)
+    }
+
+    /// The same for what goes on for years: where it has no terminal, SIGHUP does not end it. That is
+    /// what programs that rename its files send; the next rows go into new ones anyway.
+    pub(super) fn listen_in_background() -> Self {
+        let terminals = [
+            io::stdin().is_terminal(),
+            io::stdout().is_terminal(),
+            io::stderr().is_terminal(),
+        ];
+        #[cfg(unix)]
+        if terminals == [false; 3] {
+            // Nobody looks at this flag: it keeps the signal from ending the program.
+            let _ = flag::register(SIGHUP, Arc::default());
+            return Self::listening(Second::Ends, HangUp::Passes);
+        }
+        Self::listening(Second::Ends, HangUp::Ends)
     }
 
     /// The same for writes: no signal ends the program before it has said what became of them.
     pub(super) fn listen_while_writing() -> Self {
-        Self::listening(Second::Waits)
+        Self::listening(Second::Waits, HangUp::Ends)
     }
 
-    fn listening(second: Second) -> Self {
+    fn listening(second: Second, hang_up: HangUp) -> Self {
         let code = Arc::default();
         let raised: Arc<AtomicBool> = Arc::default();
         let asking: Arc<AtomicBool> = Arc::default();
@@ -71,7 +98,7 @@ impl Stop {
         }
         #[cfg(unix)]
         {
-            if !ignores_hang_ups() {
+            if hang_up == HangUp::Ends && !ignores_hang_ups() {
                 note(SIGHUP, ExitCode::HungUp);
             }
             // Or else a file that has come to its limit (`ulimit -f`) ends the program without a

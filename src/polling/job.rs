@@ -48,6 +48,8 @@ impl Manners {
 pub struct Subject {
     /// Its name in rows; empty for a meter of which nothing is known.
     pub name: String,
+    /// What stands for it in the names of files.
+    pub file_name: String,
     /// Its line, as an index into [`Site::lines`](super::Site::lines).
     pub line: usize,
     /// Its unit.

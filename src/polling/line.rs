@@ -238,6 +238,11 @@ impl<'a> LineLoop<'a> {
             return self.spared(index, job, slot, reason);
         }
         self.open(deliver);
+        // Opening may have taken its time.
+        let left = deadline.map(|deadline| deadline.saturating_sub(self.clock.now()));
+        if let Some(reason) = self.reason_to_spare(job, slot, left) {
+            return self.spared(index, job, slot, reason);
+        }
         let patience = self.patience(job, left);
         let Some(client) = self.client.as_mut() else {
             return self.spared(index, job, slot, Spared::PortAway);

@@ -1,7 +1,7 @@
 //! What is worth telling of a poll that may run for years: that something went wrong, once, and that
 //! it is over.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use jiff::Timestamp;
 
@@ -14,7 +14,8 @@ const IN_TIME: u64 = 10;
 /// One thing to tell of a set of points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum News {
-    /// Its readings are missing, or not for the same reason as before: see the cycle's troubles.
+    /// Its readings are missing, for a reason that was not told since they were all there: see the
+    /// cycle's troubles.
     Missing,
     /// They are all there again.
     Back {
@@ -41,8 +42,8 @@ pub struct Watch(BTreeMap<usize, Told>);
 
 #[derive(Debug, Default)]
 struct Told {
-    /// The reason that was told.
-    fault: Option<Fault>,
+    /// The reasons that were told.
+    faults: BTreeSet<Fault>,
     /// When the first row lacked something, and how many have since.
     lacking: Option<(Timestamp, u64)>,
     /// Slots that were not begun, since that was told.
@@ -60,7 +61,7 @@ impl Watch {
         let is_well = cycle.troubles.is_empty() && matches!(cycle.effort, Effort::Asked(_));
         if is_well {
             let lacking = told.lacking.take();
-            if told.fault.take().is_some()
+            if !std::mem::take(&mut told.faults).is_empty()
                 && let Some((since, rows)) = lacking
             {
                 news.push(News::Back { since, rows });
@@ -70,9 +71,10 @@ impl Watch {
         let lacking = told.lacking.get_or_insert((cycle.slot.time, 0));
         lacking.1 += 1;
         // A meter that was not asked is told of where that was found out.
-        let worst = cycle.row.worst();
-        if !cycle.troubles.is_empty() && worst.is_some() && told.fault != worst {
-            told.fault = worst;
+        if let Some(worst) = cycle.row.worst()
+            && !cycle.troubles.is_empty()
+            && told.faults.insert(worst)
+        {
             news.push(News::Missing);
         }
         news

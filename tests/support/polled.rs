@@ -78,6 +78,7 @@ pub(crate) fn job(meter: &str, number: u16, points: &[&str], every: Duration) ->
     let points = select(&selectors, reading).unwrap();
     let subject = Subject {
         name: meter.to_owned(),
+        file_name: String::new(),
         line: 0,
         unit: unit(number),
         manners: Manners {

@@ -1,11 +1,14 @@
 //! From what was typed to what is polled.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
 
 use crate::cli::{Layout, LineArguments, Poll, RowFormat, SchemaChange};
 use crate::commands::CommandError;
 use crate::commands::asking::units;
-use crate::commands::open_line::{check_port, echo, manners, settings};
+use crate::commands::open_line::{SIMULATED, check_port, echo, manners, settings};
 use crate::polling::site::{
     ColumnUnits, FailedRows, OnSchemaChange, PathError, PathTemplate, RowForm, RowSync, load,
 };
@@ -23,6 +26,15 @@ pub(super) fn site(arguments: &Poll) -> Result<Site, CommandError> {
     for line in &site.lines {
         check_port(&line.port)?;
     }
+    if let Some(problem) = clash(&site) {
+        return Err(CommandError::Clash {
+            file: arguments
+                .config
+                .as_ref()
+                .map(|file| file.display().to_string()),
+            problem,
+        });
+    }
     if !arguments.once
         && let Some(job) = site.jobs.iter().find(|job| job.every.is_none())
     {
@@ -30,6 +42,39 @@ pub(super) fn site(arguments: &Poll) -> Result<Site, CommandError> {
         return Err(CommandError::NoInterval { what });
     }
     Ok(site)
+}
+
+/// What of a site would get in its own way, in a sentence.
+fn clash(site: &Site) -> Option<String> {
+    let mut ports: BTreeMap<&str, &str> = BTreeMap::new();
+    for line in site.lines.iter().filter(|line| line.port != SIMULATED) {
+        if let Some(first) = ports.insert(&line.port, &line.name) {
+            let (port, second) = (&line.port, &line.name);
+            return Some(format!("lines {first} and {second} have one port, {port}"));
+        }
+    }
+    let is_idle = |index: &usize| site.jobs.iter().all(|job| job.subject.line != *index);
+    let idle = (0..site.lines.len()).find(is_idle);
+    if let Some(line) = idle.and_then(|index| site.lines.get(index)) {
+        return Some(format!("there is no meter on line {}", line.name));
+    }
+    let mut files: BTreeMap<PathBuf, usize> = BTreeMap::new();
+    for job in &site.jobs {
+        let output = site.outputs.get(job.output)?;
+        let Some(path) = &output.path else {
+            continue;
+        };
+        let file = path.at(&job.subject.file_name, Timestamp::UNIX_EPOCH);
+        let first = *files.entry(file).or_insert(job.output);
+        if first != job.output {
+            let first = &site.outputs.get(first)?.name;
+            let (second, path) = (&output.name, path.text());
+            return Some(format!(
+                "outputs {first} and {second} have one file, {path}"
+            ));
+        }
+    }
+    None
 }
 
 fn typed(arguments: &Poll) -> Result<Site, CommandError> {
@@ -50,9 +95,16 @@ fn typed(arguments: &Poll) -> Result<Site, CommandError> {
     let line = line(&arguments.line, factory);
     // The interval was checked where it was typed.
     let every = arguments.every.and_then(|every| Every::new(every).ok());
+    let name = profile.map_or("", |profile| &profile.name);
+    let is_alone = units.len() == 1;
     let jobs = units.into_iter().enumerate().map(|(meter, unit)| {
         let subject = Subject {
-            name: profile.map_or_else(String::new, |profile| profile.name.clone()),
+            name: name.to_owned(),
+            file_name: match name {
+                "" => format!("unit-{unit}"),
+                name if is_alone => name.to_owned(),
+                name => format!("{name}-{unit}"),
+            },
             line: 0,
             unit,
             manners: manners(&arguments.line),
@@ -86,7 +138,10 @@ fn output(arguments: &Poll) -> Result<SiteOutput, CommandError> {
     let path = arguments.output.output.as_deref();
     let path = path.map(template).transpose()?;
     Ok(SiteOutput {
-        name: "stdout".to_owned(),
+        name: path
+            .as_ref()
+            .map_or("stdout", PathTemplate::text)
+            .to_owned(),
         path,
         form: form(arguments)?,
         syncing: if arguments.output.no_sync {

@@ -244,7 +244,7 @@ fn parts<'a>(site: &'a Site, cycle: &Cycle) -> Option<(&'a Job, &'a SiteOutput)>
 /// The file for a row of this time; `None` is stdout.
 fn path(job: &Job, output: &SiteOutput, time: Timestamp) -> Option<PathBuf> {
     let path = output.path.as_ref()?;
-    Some(path.at(&job.subject.name, time))
+    Some(path.at(&job.subject.file_name, time))
 }
 
 fn options(output: &SiteOutput) -> AppendOptions {
@@ -285,7 +285,7 @@ pub(super) fn columns(site: &Site) -> Result<(), CommandError> {
             .path
             .as_ref()
             .is_some_and(PathTemplate::names_the_meter);
-        let meter = if has_own { &*job.subject.name } else { "" };
+        let meter = if has_own { &*job.subject.file_name } else { "" };
         match heads.entry((job.output, meter)) {
             Entry::Vacant(place) => drop(place.insert((start, job))),
             Entry::Occupied(first) if first.get().0 != start => {

@@ -299,8 +299,8 @@ impl<'a> Run<'a> {
                     News::Missed { slots } => {
                         let slots = crate::words::counted(slots, "slot was", "slots were");
                         report::warning(&format!(
-                            "{subject}: {slots} not begun, for the line was busy: the interval is \
-                             too short"
+                            "{subject}: {slots} not begun, for the line was not free in time; \
+                             --check tells how long it is busy"
                         ));
                     }
                     News::InTime { slots } => {
@@ -358,8 +358,13 @@ impl Shared<'_> {
             settle: line.settle,
             wait: line.wait,
         };
+        let is_over = || {
+            let flags = [&self.stop, &self.hurry];
+            let is_up = |flag: &AtomicBool| flag.load(Ordering::Relaxed);
+            flags.into_iter().any(|flag| is_up(flag)) || is_up(&self.halt)
+        };
         let mut open = || {
-            let mut client = plan.open(&self.clock)?;
+            let mut client = plan.open(&self.clock, &is_over)?;
             client.stop_when(Arc::clone(&self.hurry));
             Ok(client)
         };

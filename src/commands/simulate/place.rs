@@ -113,7 +113,9 @@ impl Place {
         match self {
             Self::Pty(name) => Ok(pty(name.as_deref())?),
             Self::Serial(name) => {
-                let port = while_busy(clock, name, wait, || SerialOutside::open(name, settings));
+                let port = while_busy(clock, name, wait, &|| false, || {
+                    SerialOutside::open(name, settings)
+                });
                 Ok((Box::new(port?), name.clone()))
             }
             Self::RtuOverTcp(address) => listen("rtu+tcp", address),

@@ -288,6 +288,7 @@ impl Loader<'_> {
         })?;
         let subject = Subject {
             name: table.name.as_ref().clone(),
+            file_name: table.name.as_ref().clone(),
             line: meter.line,
             unit,
             manners: self.manners(table, key, defaults)?,
