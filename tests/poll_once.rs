@@ -14,6 +14,9 @@ mod support {
 
 use std::process::Stdio;
 
+use meterpoll::transport::LineSettings;
+use meterpoll::transport::serial::Serial;
+
 use support::counting::{HEADER, counting, counts, poll};
 use support::folder::Folder;
 use support::program::{Program, without_times};
@@ -42,6 +45,29 @@ fn twelve_runs_at_once_wait_for_the_port_and_leave_twelve_whole_rows_under_one_h
         let all: Vec<u16> = (1..).take(12 * round).collect();
         assert_eq!(counts, all);
     }
+}
+
+#[test]
+fn a_port_that_another_program_holds_is_a_row_without_values_and_exit_code_3() {
+    let folder = Folder::new("poll_held_port");
+    let meter = counting();
+    let held = Serial::open(meter.path(), LineSettings::default()).unwrap();
+    let run = |wait| {
+        let run = poll(&meter, "--once -q -o rows.csv --wait").arguments(wait);
+        run.folder(folder.path())
+    };
+    let output = run("20ms").output();
+    assert_eq!(output.status.code(), Some(3));
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    let error = format!("error: port {} is in use by ", meter.path());
+    assert!(stderr.starts_with(&error), "{stderr}");
+    let missing = format!("{HEADER}<time>,,1,port,\n");
+    assert_eq!(without_times(&folder.read("rows.csv")), missing);
+    assert_eq!(meter.requests(), [[0; 0]; 0]);
+    drop(held);
+    run("60s").run();
+    let both = format!("{missing}<time>,,1,ok,1\n");
+    assert_eq!(without_times(&folder.read("rows.csv")), both);
 }
 
 #[test]

@@ -64,6 +64,12 @@ fn rank(times: &mut [Duration], percent: usize) -> f64 {
     times.get(index).copied().map_or(f64::NAN, milliseconds)
 }
 
+/// From the first request of a cycle to the fourth, the median beside what was planned: three
+/// exchanges.
+fn beside_the_plan(cycles: &mut [Duration]) -> f64 {
+    rank(cycles, 50) / milliseconds(3 * exchange())
+}
+
 /// 64 lines of 4 meters each, every second.
 fn many_lines(folder: &Path) -> Result<(), Box<dyn Error>> {
     const LINES: usize = 64;
@@ -85,12 +91,12 @@ fn many_lines(folder: &Path) -> Result<(), Box<dyn Error>> {
     );
     verdict("a slot begins late, p99", rank(&mut late, 99), "ms", 20.0);
     verdict("  at the most", rank(&mut late, 100), "ms", 20.0);
-    // From the first request to the fourth: three exchanges.
-    let cycles: Vec<Duration> = lines.iter().flat_map(Meters::cycles).collect();
-    let sum: Duration = cycles.iter().sum();
-    let mean = sum.as_secs_f64() / f64::from(u32::try_from(cycles.len().max(1))?);
-    let ratio = mean / (3 * exchange()).as_secs_f64();
-    verdict("a cycle's time / what was planned", ratio, "", 1.02);
+    let mut cycles: Vec<Duration> = lines.iter().flat_map(Meters::cycles).collect();
+    let ratio = beside_the_plan(&mut cycles);
+    println!(
+        "  {:52}{ratio:10.3}",
+        "a cycle's time / what was planned, median"
+    );
     if let Some(usage) = usage {
         verdict("peak resident memory", usage.peak_mib, "MiB", 16.0);
         let share = usage.busy.as_secs_f64() / took.as_secs_f64() * 100.0;
@@ -110,6 +116,10 @@ fn periods(folder: &Path) -> Result<(), Box<dyn Error>> {
     let poll = ["poll", "-p", ours.path(), "-a", "1", "0x0000+10"];
     let file = ["--every", "1s", "-o", "period.csv"];
     let poll = Watched::start(folder, &[poll.as_slice(), &file].concat())?;
+    let paced = Meters::new(Pace::Line);
+    let four = ["poll", "-p", paced.path(), "-a", "1-4", "0x0000+10"];
+    let file = ["--every", "1s", "-o", "cycle.csv"];
+    let four = Watched::start(folder, &[four.as_slice(), &file].concat())?;
     let line = "-m rtu -a 1 -b 9600 -P none -0 -r 0 -c 10 -l 1000 -q".split(' ');
     let mbpoll = std::process::Command::new("mbpoll")
         .args(line)
@@ -120,6 +130,7 @@ fn periods(folder: &Path) -> Result<(), Box<dyn Error>> {
         .spawn();
     thread::sleep(Duration::from_millis(CYCLES * 1060 + 1000));
     poll.stop()?;
+    four.stop()?;
     let spread = |name: &str, meters: &Meters| {
         let periods = meters.periods(usize::try_from(CYCLES).unwrap_or(usize::MAX));
         let sum: Duration = periods.iter().sum();
@@ -147,6 +158,9 @@ fn periods(folder: &Path) -> Result<(), Box<dyn Error>> {
         }
         Err(_) => println!("  mbpoll     not installed"),
     }
+    println!("meanwhile four meters on a line at 9600 8N1:");
+    let ratio = beside_the_plan(&mut paced.cycles());
+    verdict("a cycle's time / what was planned, median", ratio, "", 1.02);
     println!();
     Ok(())
 }
