@@ -101,7 +101,7 @@ fn a_port_that_is_not_there_ends_a_run_without_end_at_once_and_is_a_row_of_a_sin
         .arguments("--once")
         .stdout("time,meter,unit_id,status,ct_primary\n<time>,pqm,17,port,\n")
         .stderr(format!(
-            "{error}error: the port is away: 1 meter was not asked\n"
+            "{error}error: the port is away: 1 row is of meters that were not asked\n"
         ))
         .code(3)
         .run();
@@ -322,7 +322,7 @@ fn rows_with_different_columns_do_not_go_into_one_file_of_wide_csv() {
         .folder(folder.path())
         .stderr(
             "error: main, unit 17 and other, unit 17 have different columns, and both would go to \
-             log/all.csv as wide CSV\n",
+             log/all.csv\n",
         )
         .code(2)
         .run();

@@ -86,7 +86,11 @@ impl Client {
     /// Sends a request once, after the silence and `pause`, and waits for its answer. The answer is
     /// still owed when this returns: whether it pays is the caller's to say.
     pub(super) fn attempt(&mut self, asked: &Asked, pause: Duration) -> Result<Answer, Failure> {
-        let silent = self.wait_for_silence(asked, pause);
+        let silent = if self.is_stopping() {
+            Err(Failure::Stopped)
+        } else {
+            self.wait_for_silence(asked, pause)
+        };
         let result = silent.and_then(|()| self.exchange(asked));
         self.count(asked.unit, result.as_ref().err());
         result
