@@ -68,6 +68,8 @@ pub(super) enum Next<'a> {
     Request(Unit, &'a Frame),
     /// Something that no answer to anything before may be taken for.
     Unlike(Unit),
+    /// Anything of this unit: what it owes itself is another matter.
+    AnyOf(Unit),
     /// Nothing: the line is left.
     Nothing,
 }
@@ -244,11 +246,15 @@ impl Debts {
         self.expire(now);
         let until = |unit: Unit, debt: &Debt| match next {
             Next::Request(asked, frame) if asked == unit && debt.frame == *frame => None,
-            Next::Request(asked, _) | Next::Unlike(asked) if asked != unit => Some(debt.line_until),
+            Next::AnyOf(asked) if asked == unit => None,
+            Next::Request(asked, _) | Next::Unlike(asked) | Next::AnyOf(asked) if asked != unit => {
+                Some(debt.line_until)
+            }
             _ => Some(debt.unit_until),
         };
         let held = |unit: Unit, account: &Account| match next {
             Next::Request(asked, _) | Next::Unlike(asked) if asked != unit => None,
+            Next::AnyOf(_) => None,
             _ => account.held_until,
         };
         self.0

@@ -129,6 +129,15 @@ impl Client {
         }
     }
 
+    /// Waits for what other units may still answer, which a request of this one waits for anyway: so
+    /// that the time at which reading it begins is the time at which it is asked. A port that is lost
+    /// shows when it is.
+    pub fn let_others_finish(&mut self, unit: Unit) {
+        if self.line.loss().is_none() {
+            let _ = self.settle(Next::AnyOf(unit));
+        }
+    }
+
     /// Leaves the line, and lets no late answer be taken for one to whoever opens it next: what
     /// may still come is waited for. Takes no time when every request was answered, or when the
     /// port was lost already.

@@ -104,6 +104,7 @@ impl Taken<'_> {
 /// does not answer at all, or stops answering, is not asked further: every other read would cost a
 /// time-out as well.
 pub fn take<'a>(client: &mut Client, inquiry: &Inquiry<'a, '_>, memory: &mut Memory) -> Taken<'a> {
+    client.let_others_finish(inquiry.unit);
     let time = client.utc_now();
     let asked = inquiry.points;
     let besides: Vec<Point> = inquiry.setup.besides(asked).cloned().collect();
