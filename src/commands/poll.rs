@@ -42,7 +42,11 @@ pub(super) fn run(arguments: &Poll, report: &mut Report) -> Result<ExitCode, Com
     let stop = Stop::listen();
     let run = Run::new(&site, outlets, &clock, &stop, report);
     let code = run.all(course, on_stdout)?;
-    Ok(stop.requested().unwrap_or(code))
+    Ok(match code {
+        // Rows that are nowhere matter more than who stopped it.
+        ExitCode::Output => code,
+        _ => stop.requested().unwrap_or(code),
+    })
 }
 
 fn course(arguments: &Poll, site: &Site) -> Course {

@@ -12,8 +12,8 @@ use jiff::Timestamp;
 use log::info;
 
 use crate::append::{AppendError, AppendOptions, Appender, OnMisfit, Removed, Start, Syncing};
-use crate::commands::CommandError;
 use crate::commands::report::{self, Report};
+use crate::commands::{CommandError, ExitCode};
 use crate::output::csv::{Names, WIDE_COLUMNS};
 use crate::output::influx::INFLUX_NAMES;
 use crate::output::{Influx, JsonLines, LineFormat, LongCsv, Sink, Stream, WideCsv};
@@ -170,16 +170,28 @@ impl<'a> Outlets<'a> {
         self.files.retain(|_, file| !file.lines.is_empty());
     }
 
-    /// Writes what is left.
-    pub(super) fn finish(&mut self) -> Result<(), CommandError> {
-        let mut result = Ok(());
-        for file in self.files.values_mut() {
+    /// Writes what is left. Every file that does not take it is told, with the rows that are lost by
+    /// that.
+    /// Returns what to end with where there are such.
+    pub(super) fn finish(&mut self, report: &mut Report) -> Option<ExitCode> {
+        let mut worst = None;
+        for ((_, path), file) in &mut self.files {
             if let Err(error) = file.append() {
                 let lines = String::from_utf8_lossy(&file.lines).into_owned();
-                result = Err(CommandError::Unwritten { error, lines });
+                worst = Some(report.error(&CommandError::Unwritten { error, lines }));
+            }
+            if let Health::Failing { lost, .. } = file.health
+                && lost > 0
+            {
+                report::problem(
+                    &path.display().to_string(),
+                    &format!("{lost} bytes of rows are lost"),
+                );
+                worst = Some(ExitCode::Output);
             }
         }
-        result
+        self.files.clear();
+        worst
     }
 
     /// The file of this path and output, which is not opened by that.

@@ -147,10 +147,17 @@ impl<'a> Run<'a> {
             screen.draw(&self.board, self.clock.utc_now());
             screen.leave();
         }
-        let written = self.outlets.finish();
+        let written = self.outlets.finish(self.report);
         self.conclude(course);
-        result.and(written)?;
-        Ok(ExitCode::of(self.delivered, &self.faults))
+        match (result, written) {
+            (result, None) => result.map(|()| ExitCode::of(self.delivered, &self.faults)),
+            (Ok(()), Some(code)) => Ok(code),
+            // Rows that are nowhere matter more than why it ended.
+            (Err(error), Some(code)) => {
+                self.report.error(&error);
+                Ok(code)
+            }
+        }
     }
 
     /// Takes what the lines say, until all have ended.

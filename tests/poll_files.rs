@@ -1,0 +1,115 @@
+//! `poll` and files that do not take its rows.
+
+#![cfg(unix)]
+
+mod support {
+    pub(crate) mod folder;
+    pub(crate) mod program;
+    pub(crate) mod waiting;
+}
+
+use std::fs;
+use std::io::{BufRead, BufReader, Lines};
+use std::process::{Child, ChildStderr, Stdio};
+
+use support::folder::Folder;
+use support::program::{Program, kill, without_times};
+use support::waiting::wait_until;
+
+/// Two meters with a file each.
+const SITE: &str = r#"
+[defaults]
+every = "100ms"
+
+[[lines]]
+name = "hall"
+port = "sim:"
+
+[[lines]]
+name = "roof"
+port = "sim:"
+
+[[meters]]
+name = "main"
+line = "hall"
+unit = 17
+profile = "pqm"
+points = ["ct_primary"]
+
+[[meters]]
+name = "other"
+line = "roof"
+unit = 17
+profile = "pqm"
+points = ["ct_primary"]
+
+[[outputs]]
+name = "log"
+path = "{meter}.csv"
+"#;
+
+/// What a file holds that rows do not belong into.
+const OTHER: &str = "a,b\n1,2\n";
+
+/// A poll under way.
+struct Poll {
+    child: Child,
+    told: Lines<BufReader<ChildStderr>>,
+}
+
+impl Poll {
+    fn start(folder: &Folder, site: &str) -> Self {
+        folder.write("site.toml", site);
+        let mut command = Program::new("poll -q --config site.toml")
+            .folder(folder.path())
+            .command();
+        let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let told = BufReader::new(child.stderr.take().unwrap()).lines();
+        Self { child, told }
+    }
+
+    /// The next line on stderr. On a machine that is busy slots may be missed, which is told too.
+    fn next(&mut self) -> Option<String> {
+        let told = self.told.by_ref().map(Result::unwrap);
+        let mut told = told.filter(|line| !line.starts_with("warning: "));
+        told.next().map(|line| without_times(&line))
+    }
+
+    /// Stops it; what it still says, and what it ends with.
+    fn stop(mut self) -> (Vec<String>, Option<i32>) {
+        kill(&self.child, "TERM");
+        let told = std::iter::from_fn(|| self.next()).collect();
+        (told, self.child.wait().unwrap().code())
+    }
+}
+
+/// Puts something else in place of a file.
+fn spoil(folder: &Folder, name: &str) {
+    folder.write("spoilt", OTHER);
+    fs::rename(folder.file("spoilt"), folder.file(name)).unwrap();
+}
+
+#[test]
+fn at_the_end_the_rows_of_every_file_that_does_not_take_them_are_told() {
+    let folder = Folder::new("poll_files_at_the_end");
+    let mut poll = Poll::start(&folder, SITE);
+    wait_until(|| folder.names() == ["main.csv", "other.csv", "site.toml"]);
+    for name in ["main.csv", "other.csv"] {
+        spoil(&folder, name);
+    }
+    for _ in 0..2 {
+        let error = poll.next().unwrap();
+        assert!(error.contains("it has other columns"), "{error}");
+    }
+    let (told, code) = poll.stop();
+    assert_eq!(code, Some(7));
+    for meter in ["main", "other"] {
+        let error = format!("  because: {meter}.csv: it has other columns");
+        let count = told.iter().filter(|line| line.starts_with(&error)).count();
+        assert_eq!(count, 1, "{told:?}");
+        let row = format!("not written: <time>,{meter},17,ok,600");
+        assert!(told.contains(&row), "{told:?}");
+        assert_eq!(folder.read(&format!("{meter}.csv")), OTHER);
+    }
+}
