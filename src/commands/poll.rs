@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &Poll, report: &mut Report) -> Result<ExitCode, Com
         return print(forecast.to_string().as_bytes()).map(|_| code);
     }
     // Before anything is sent: where the rows cannot go, none are taken.
-    let outlets = Outlets::open(&site, Arc::clone(&clock), on_stdout)?;
+    let outlets = Outlets::open(&site, Arc::clone(&clock), on_stdout, course)?;
     let stop = Stop::listen();
     let run = Run::new(&site, outlets, &clock, &stop, report);
     let code = run.all(course, on_stdout)?;

@@ -11,6 +11,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 use log::info;
 
+use super::run::Course;
 use crate::append::{AppendError, AppendOptions, Appender, OnMisfit, Removed, Start, Syncing};
 use crate::commands::report::{self, Report};
 use crate::commands::{CommandError, ExitCode};
@@ -26,6 +27,9 @@ use crate::transport::Clock;
 /// How long a file is waited for that another program has locked: meanwhile nobody else is written
 /// for.
 const FILE_WAIT: Duration = Duration::from_secs(1);
+
+/// The same where everything is read once: nobody is kept waiting by that.
+const FILE_WAIT_ONCE: Duration = Duration::from_secs(10);
 
 /// A file that does not take rows is left alone so long before it is tried again.
 const TRY_AGAIN: Duration = Duration::from_secs(2);
@@ -47,6 +51,8 @@ pub(super) struct Outlets<'a> {
     site: &'a Site,
     clock: Arc<dyn Clock>,
     on_stdout: OnStdout,
+    /// How long a locked file is waited for.
+    wait: Duration,
     streams: BTreeMap<usize, Stream<Stdout, Box<dyn LineFormat>>>,
     /// By output and path.
     files: BTreeMap<(usize, PathBuf), OpenFile>,
@@ -80,11 +86,16 @@ impl<'a> Outlets<'a> {
         site: &'a Site,
         clock: Arc<dyn Clock>,
         on_stdout: OnStdout,
+        course: Course,
     ) -> Result<Self, CommandError> {
         let mut outlets = Self {
             site,
             clock,
             on_stdout,
+            wait: match course {
+                Course::Endless => FILE_WAIT,
+                Course::Once { within } => within.map_or(FILE_WAIT_ONCE, |w| w.min(FILE_WAIT_ONCE)),
+            },
             streams: BTreeMap::new(),
             files: BTreeMap::new(),
         };
@@ -208,8 +219,9 @@ impl<'a> Outlets<'a> {
                 let start = format.start(&job.points).map_err(CommandError::Output)?;
                 let path = place.key().1.clone();
                 let clock = Arc::clone(&self.clock);
+                let options = options(output, self.wait);
                 Ok(place.insert(OpenFile {
-                    appender: Appender::new(path, start, options(output), clock),
+                    appender: Appender::new(path, start, options, clock),
                     format,
                     lines: Vec::new(),
                     health: Health::Good,
@@ -259,7 +271,7 @@ fn path(job: &Job, output: &SiteOutput, time: Timestamp) -> Option<PathBuf> {
     Some(path.at(&job.subject.name, time))
 }
 
-fn options(output: &SiteOutput) -> AppendOptions {
+fn options(output: &SiteOutput, wait: Duration) -> AppendOptions {
     AppendOptions {
         on_misfit: match output.on_schema_change {
             OnSchemaChange::Refuse => OnMisfit::Refuse,
@@ -269,7 +281,7 @@ fn options(output: &SiteOutput) -> AppendOptions {
             RowSync::Each => Syncing::Each,
             RowSync::Never => Syncing::Never,
         },
-        wait: FILE_WAIT,
+        wait,
     }
 }
 

@@ -3,7 +3,8 @@
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+// It is bounded: what reads waits for what writes, and misses slots, before rows pile up.
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender as Sender};
 use std::thread;
 use std::time::Duration;
 
@@ -28,6 +29,13 @@ const TICK: Duration = Duration::from_millis(250);
 
 /// Rows wait so long for others to be written with, where a line is never idle.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
+
+/// Files are written no more often, however many lines become idle: each time costs a sync of the
+/// disk.
+const SHORTEST_WAIT: Duration = Duration::from_millis(250);
+
+/// So much that lines have said may wait to be heard.
+const MOST_WAITING: usize = 1024;
 
 /// How long it goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +77,10 @@ pub(super) struct Run<'a> {
     faults: Vec<Fault>,
     /// Rows of meters that were not asked, for want of a port and of time.
     untried: (usize, usize),
-    flushed: Duration,
+    /// When files are written again at the earliest, and at the latest.
+    next_flush: (Duration, Duration),
+    /// Whether a line has become idle since they were.
+    is_idle: bool,
     has_rows: bool,
 }
 
@@ -109,7 +120,8 @@ impl<'a> Run<'a> {
             delivered: 0,
             faults: Vec::new(),
             untried: (0, 0),
-            flushed: clock.now(),
+            next_flush: (Duration::ZERO, clock.now().saturating_add(LONGEST_WAIT)),
+            is_idle: false,
             has_rows: false,
         }
     }
@@ -132,7 +144,7 @@ impl<'a> Run<'a> {
             hurry: Arc::default(),
         };
         let result = thread::scope(|scope| {
-            let (sender, receiver) = mpsc::channel();
+            let (sender, receiver) = mpsc::sync_channel(MOST_WAITING);
             for (index, line) in self.site.lines.iter().enumerate() {
                 let (shared, sender) = (&shared, sender.clone());
                 scope.spawn(move || shared.poll(index, line, &sender));
@@ -160,18 +172,32 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Takes what the lines say, until all have ended.
+    /// Takes what the lines say, until all have ended: rows that come after something went wrong are
+    /// for files as well.
     fn receive(
         &mut self,
         shared: &Shared<'_>,
         events: &Receiver<(usize, Event)>,
     ) -> Result<(), CommandError> {
         let start = self.clock.now();
+        let mut result = Ok(());
         loop {
-            match events.recv_timeout(TICK) {
-                Ok((line, event)) => self.event(shared, line, event)?,
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            let first = match events.recv_timeout(TICK) {
+                Ok(event) => Some(event),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => return result,
+            };
+            // What has come meanwhile is written in one go.
+            for (line, event) in first
+                .into_iter()
+                .chain(events.try_iter().take(MOST_WAITING))
+            {
+                if let Err(error) = self.event(shared, line, event)
+                    && result.is_ok()
+                {
+                    shared.halt.store(true, Ordering::Relaxed);
+                    result = Err(error);
+                }
             }
             let now = self.clock.now();
             if let Course::Once { within: Some(time) } = shared.course
@@ -179,8 +205,9 @@ impl<'a> Run<'a> {
             {
                 shared.hurry.store(true, Ordering::Relaxed);
             }
-            let is_endless = shared.course == Course::Endless;
-            if is_endless && now.saturating_sub(self.flushed) >= LONGEST_WAIT {
+            let (earliest, latest) = self.next_flush;
+            let is_time = now >= latest || (self.is_idle && now >= earliest);
+            if is_time && shared.course == Course::Endless {
                 self.flush();
             }
             if let Some(screen) = &mut self.screen {
@@ -197,7 +224,7 @@ impl<'a> Run<'a> {
     ) -> Result<(), CommandError> {
         match event {
             Event::Cycle(cycle) => self.cycle(shared, &cycle)?,
-            Event::Idle => self.flush(),
+            Event::Idle => self.is_idle = true,
             Event::Open => {
                 let state = self.ports.get_mut(line);
                 let before = state.map(|state| std::mem::replace(state, PortState::Open));
@@ -328,13 +355,19 @@ impl<'a> Run<'a> {
     }
 
     fn flush(&mut self) {
-        self.flushed = self.clock.now();
+        let start = self.clock.now();
         if let Some(screen) = &mut self.screen
             && self.outlets.has_rows()
         {
             screen.erase();
         }
         self.outlets.flush(self.report);
+        // A slow disk is given as much time without as it has taken.
+        let end = self.clock.now();
+        let pause = end.saturating_sub(start).max(SHORTEST_WAIT);
+        let latest = pause.max(LONGEST_WAIT);
+        self.next_flush = (end.saturating_add(pause), end.saturating_add(latest));
+        self.is_idle = false;
     }
 
     /// Says what all of it came to.
