@@ -9,9 +9,10 @@ mod support {
 }
 
 use std::fs;
-use std::io::{BufRead, BufReader, Lines};
+use std::io::{BufRead, BufReader, Lines, Write};
 use std::process::{Child, ChildStderr, Stdio};
 
+use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
 use support::folder::Folder;
 use support::program::{Program, kill, without_times};
 use support::waiting::wait_until;
@@ -112,4 +113,60 @@ fn at_the_end_the_rows_of_every_file_that_does_not_take_them_are_told() {
         assert!(told.contains(&row), "{told:?}");
         assert_eq!(folder.read(&format!("{meter}.csv")), OTHER);
     }
+}
+
+/// The site with the rows of one meter on stdout.
+fn with_stdout() -> String {
+    let site = SITE.replace("\"roof\"\nunit", "\"roof\"\noutput = \"print\"\nunit");
+    let site = site.replace("\"hall\"\nunit", "\"hall\"\noutput = \"log\"\nunit");
+    let site = site.replace("100ms", "50ms");
+    site + "\n[[outputs]]\nname = \"print\"\n"
+}
+
+/// How many lines a file has.
+fn lines(folder: &Folder, name: &str) -> usize {
+    let text = fs::read_to_string(folder.file(name));
+    text.unwrap_or_default().lines().count()
+}
+
+#[test]
+fn where_stdout_is_closed_that_is_told_and_files_go_on() {
+    let folder = Folder::new("poll_files_closed_pipe");
+    let mut poll = Poll::start(&folder, &with_stdout());
+    drop(poll.child.stdout.take());
+    let told = poll.told.next().unwrap().unwrap();
+    assert_eq!(told, "warning: stdout was closed: no more rows go there");
+    let before = lines(&folder, "main.csv");
+    wait_until(|| lines(&folder, "main.csv") > before + 3);
+    assert_eq!(poll.stop(), (Vec::new(), Some(7)));
+}
+
+#[test]
+fn a_reader_that_stands_still_holds_up_neither_the_files_nor_the_end() {
+    let folder = Folder::new("poll_files_stalled_pipe");
+    // A pipe that is full before the first row.
+    let (reader, mut writer) = std::io::pipe().unwrap();
+    let flags = fcntl_getfl(&writer).unwrap();
+    fcntl_setfl(&writer, flags | OFlags::NONBLOCK).unwrap();
+    while writer.write(&[b'x'; 4096]).is_ok() {}
+    fcntl_setfl(&writer, flags).unwrap();
+    folder.write("site.toml", with_stdout());
+    let mut command = Program::new("poll -q --config site.toml")
+        .folder(folder.path())
+        .command();
+    let mut child = command
+        .stdout(writer)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let told = BufReader::new(child.stderr.take().unwrap()).lines();
+    wait_until(|| lines(&folder, "main.csv") > 5);
+    kill(&child, "TERM");
+    assert_eq!(child.wait().unwrap().code(), Some(7));
+    let told = told.map(Result::unwrap);
+    let told: Vec<String> = told.filter(|line| !line.starts_with("warning: ")).collect();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].starts_with("error: stdout: nobody reads it; "));
+    assert!(told[0].ends_with(" rows are lost"));
+    drop(reader);
 }

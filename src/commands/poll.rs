@@ -8,6 +8,7 @@
 mod arguments;
 mod forecast;
 mod outlets;
+mod printer;
 mod run;
 mod screen;
 

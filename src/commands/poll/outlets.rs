@@ -3,21 +3,23 @@
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::{self, Stdout};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use jiff::Timestamp;
 use log::info;
 
+use super::printer::Printer;
 use super::run::Course;
 use crate::append::{AppendError, AppendOptions, Appender, OnMisfit, Removed, Start, Syncing};
 use crate::commands::report::{self, Report};
 use crate::commands::{CommandError, ExitCode};
 use crate::output::csv::{Names, WIDE_COLUMNS};
 use crate::output::influx::INFLUX_NAMES;
-use crate::output::{Influx, JsonLines, LineFormat, LongCsv, Sink, Stream, WideCsv};
+use crate::output::{Influx, JsonLines, LineFormat, LongCsv, WideCsv};
 use crate::polling::site::{
     ColumnUnits, FailedRows, OnSchemaChange, PathTemplate, RowForm, RowSync,
 };
@@ -53,7 +55,13 @@ pub(super) struct Outlets<'a> {
     on_stdout: OnStdout,
     /// How long a locked file is waited for.
     wait: Duration,
-    streams: BTreeMap<usize, Stream<Stdout, Box<dyn LineFormat>>>,
+    course: Course,
+    /// From the first row on.
+    printer: Option<Printer>,
+    /// The outputs whose header was printed.
+    begun: BTreeSet<usize>,
+    /// What to end with, where something went wrong that did not end it.
+    worst: Option<ExitCode>,
     /// By output and path.
     files: BTreeMap<(usize, PathBuf), OpenFile>,
 }
@@ -96,7 +104,10 @@ impl<'a> Outlets<'a> {
                 Course::Endless => FILE_WAIT,
                 Course::Once { within } => within.map_or(FILE_WAIT_ONCE, |w| w.min(FILE_WAIT_ONCE)),
             },
-            streams: BTreeMap::new(),
+            course,
+            printer: None,
+            begun: BTreeSet::new(),
+            worst: None,
             files: BTreeMap::new(),
         };
         let now = outlets.clock.utc_now();
@@ -130,11 +141,46 @@ impl<'a> Outlets<'a> {
         if self.on_stdout == OnStdout::Table {
             return Ok(());
         }
-        let stream = self.streams.entry(job.output);
-        let stream = stream.or_insert_with(|| Stream::new(io::stdout(), format(output.form)));
-        stream
-            .row(&job.points, &cycle.row)
-            .map_err(CommandError::Output)
+        let format = format(output.form);
+        let is_first = !self.begun.contains(&job.output);
+        let mut bytes = if is_first {
+            format
+                .start(&job.points)
+                .map_err(CommandError::Output)?
+                .head()
+        } else {
+            Vec::new()
+        };
+        let lines = format.lines(&job.points, &cycle.row);
+        bytes.extend(lines.map_err(CommandError::Output)?);
+        let printer = self
+            .printer
+            .get_or_insert_with(|| Printer::start(site.jobs.len()));
+        if printer.row(bytes) {
+            self.begun.insert(job.output);
+        }
+        Ok(())
+    }
+
+    /// Looks after stdout.
+    ///
+    /// # Errors
+    /// Where it takes nothing any more, and rows go nowhere else.
+    pub(super) fn look(&mut self, report: &mut Report) -> Result<(), CommandError> {
+        let Some(Err(error)) = self.printer.as_mut().map(Printer::look) else {
+            return Ok(());
+        };
+        if self.site.outputs.iter().all(|output| output.path.is_none()) {
+            return Err(error);
+        }
+        match &error {
+            CommandError::Output(cause) if cause.kind() == ErrorKind::BrokenPipe => {
+                report::warning("stdout was closed: no more rows go there");
+                self.worst = Some(ExitCode::Output);
+            }
+            error => self.worst = Some(report.error(error)),
+        }
+        Ok(())
     }
 
     /// Whether there is anything to write.
@@ -184,8 +230,8 @@ impl<'a> Outlets<'a> {
     /// Writes what is left. Every file that does not take it is told, with the rows that are lost by
     /// that.
     /// Returns what to end with where there are such.
-    pub(super) fn finish(&mut self, report: &mut Report) -> Option<ExitCode> {
-        let mut worst = None;
+    pub(super) fn finish(&mut self, report: &mut Report, stop: &AtomicBool) -> Option<ExitCode> {
+        let mut worst = self.worst;
         for ((_, path), file) in &mut self.files {
             if let Err(error) = file.append() {
                 let lines = String::from_utf8_lossy(&file.lines).into_owned();
@@ -202,7 +248,12 @@ impl<'a> Outlets<'a> {
             }
         }
         self.files.clear();
-        worst
+        let is_stopped = || stop.load(Ordering::Relaxed);
+        let printed = self
+            .printer
+            .as_mut()
+            .and_then(|printer| printer.finish(self.course, &is_stopped, &*self.clock, report));
+        printed.or(worst)
     }
 
     /// The file of this path and output, which is not opened by that.

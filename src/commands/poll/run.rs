@@ -159,7 +159,7 @@ impl<'a> Run<'a> {
             screen.draw(&self.board, self.clock.utc_now());
             screen.leave();
         }
-        let written = self.outlets.finish(self.report);
+        let written = self.outlets.finish(self.report, &shared.stop);
         self.conclude(course);
         match (result, written) {
             (result, None) => result.map(|()| ExitCode::of(self.delivered, &self.faults)),
@@ -188,16 +188,15 @@ impl<'a> Run<'a> {
                 Err(RecvTimeoutError::Disconnected) => return result,
             };
             // What has come meanwhile is written in one go.
-            for (line, event) in first
-                .into_iter()
-                .chain(events.try_iter().take(MOST_WAITING))
-            {
-                if let Err(error) = self.event(shared, line, event)
-                    && result.is_ok()
-                {
-                    shared.halt.store(true, Ordering::Relaxed);
-                    result = Err(error);
-                }
+            let mut ended = Ok(());
+            let further = events.try_iter().take(MOST_WAITING);
+            for (line, event) in first.into_iter().chain(further) {
+                ended = ended.and(self.event(shared, line, event));
+            }
+            ended = ended.and(self.outlets.look(self.report));
+            if result.is_ok() && ended.is_err() {
+                shared.halt.store(true, Ordering::Relaxed);
+                result = ended;
             }
             let now = self.clock.now();
             if let Course::Once { within: Some(time) } = shared.course
