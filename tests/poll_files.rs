@@ -60,10 +60,12 @@ struct Poll {
 
 impl Poll {
     fn start(folder: &Folder, site: &str) -> Self {
+        Self::run(folder, site, "poll -q --config site.toml")
+    }
+
+    fn run(folder: &Folder, site: &str, arguments: &str) -> Self {
         folder.write("site.toml", site);
-        let mut command = Program::new("poll -q --config site.toml")
-            .folder(folder.path())
-            .command();
+        let mut command = Program::new(arguments).folder(folder.path()).command();
         let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let told = BufReader::new(child.stderr.take().unwrap()).lines();
@@ -169,4 +171,29 @@ fn a_reader_that_stands_still_holds_up_neither_the_files_nor_the_end() {
     assert!(told[0].starts_with("error: stdout: nobody reads it; "));
     assert!(told[0].ends_with(" rows are lost"));
     drop(reader);
+}
+
+#[test]
+fn files_that_follow_one_another_are_told_once_and_when_rows_are_written_again() {
+    let folder = Folder::new("poll_files_by_time");
+    let site = SITE.replace("{meter}.csv", "log/%H%M%S.csv");
+    folder.write("log", "");
+    fs::remove_file(folder.file("log")).unwrap();
+    let mut poll = Poll::run(&folder, &site, "poll --config site.toml");
+    wait_until(|| fs::read_dir(folder.file("log")).is_ok_and(|files| files.count() > 0));
+    // No file of any second can be made.
+    fs::rename(folder.file("log"), folder.file("before")).unwrap();
+    folder.write("log", "");
+    let error = poll.next().unwrap();
+    assert!(error.starts_with("error: log/"), "{error}");
+    std::thread::sleep(std::time::Duration::from_millis(2500));
+    fs::remove_file(folder.file("log")).unwrap();
+    wait_until(|| fs::read_dir(folder.file("log")).is_ok_and(|files| files.count() > 2));
+    let (told, _) = poll.stop();
+    assert!(
+        !told.iter().any(|line| line.starts_with("error")),
+        "{told:?}"
+    );
+    let again = told.iter().filter(|line| line.ends_with(": written again"));
+    assert_eq!(again.count(), 1, "{told:?}");
 }

@@ -6,6 +6,7 @@
 //! `forecast` says what would be done.
 
 mod arguments;
+mod files;
 mod forecast;
 mod outlets;
 mod printer;
