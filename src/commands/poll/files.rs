@@ -47,6 +47,25 @@ struct OpenFile {
     series: Series,
     appender: Appender,
     rows: VecDeque<KeptRow>,
+    left: Option<Left>,
+}
+
+/// What stands in a file although it could not be written.
+struct Left {
+    file: PathBuf,
+    from: u64,
+    bytes: Vec<u8>,
+    /// The number behind that of the last of its rows.
+    end: u64,
+}
+
+/// Whether it is known of all rows that they are in their file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// It is.
+    Yes,
+    /// Others changed the file, and what is not known was told.
+    No,
 }
 
 /// A row that is in no file yet.
@@ -99,6 +118,7 @@ impl Files {
                     series,
                     appender: Appender::new(path, start, options, Arc::clone(&self.clock)),
                     rows: VecDeque::new(),
+                    left: None,
                 })
             }
         };
@@ -156,9 +176,11 @@ impl Files {
             if was_locked || trouble.is_some_and(|trouble| now < trouble.again) {
                 continue;
             }
-            match file.append() {
-                Ok(size) => {
-                    self.size -= size;
+            let before = file.size();
+            let appended = file.append();
+            self.size -= before - file.size();
+            match appended {
+                Ok(_) => {
                     written.insert(file.series.clone(), path.clone());
                 }
                 Err(error) => {
@@ -195,9 +217,13 @@ impl Files {
     pub(super) fn finish(&mut self, report: &mut Report) -> Option<ExitCode> {
         let mut worst = None;
         for file in self.open.values_mut() {
-            if let Err(error) = file.append() {
-                let lines = String::from_utf8_lossy(&file.bytes()).into_owned();
-                worst = Some(report.error(&CommandError::Unwritten { error, lines }));
+            match file.append() {
+                Ok(Known::Yes) => {}
+                Ok(Known::No) => worst = Some(ExitCode::Output),
+                Err(error) => {
+                    let lines = String::from_utf8_lossy(&file.bytes()).into_owned();
+                    worst = Some(report.error(&CommandError::Unwritten { error, lines }));
+                }
             }
         }
         self.open.clear();
@@ -210,14 +236,55 @@ impl Files {
 }
 
 impl OpenFile {
-    /// Appends all rows, and returns what they took.
-    fn append(&mut self) -> Result<usize, AppendError> {
+    /// Appends all rows; returns whether it is known that all are there.
+    fn append(&mut self) -> Result<Known, AppendError> {
+        let known = self.undo()?;
         let mut tell = |file: &Path, removed: &Removed| report::removed(file, removed);
         let bytes = self.bytes();
-        let file = self.appender.append(&bytes, &mut tell)?;
+        let file = match self.appender.append(&bytes, &mut tell) {
+            Ok(file) => file,
+            Err(error) => {
+                self.left = error.problem.left_from().map(|from| Left {
+                    file: error.file.clone(),
+                    from,
+                    bytes,
+                    end: self.rows.back().map_or(0, |row| row.number + 1),
+                });
+                return Err(error);
+            }
+        };
         let file = std::path::absolute(&file).unwrap_or(file);
         info!("wrote {} bytes to {}", bytes.len(), file.display());
-        Ok(self.rows.drain(..).map(|row| row.size()).sum())
+        self.rows.clear();
+        Ok(known)
+    }
+
+    /// Removes what an earlier try has left, so that no row stands there twice. Where that cannot be
+    /// known, its rows are told and dropped.
+    fn undo(&mut self) -> Result<Known, AppendError> {
+        let Some(left) = &self.left else {
+            return Ok(Known::Yes);
+        };
+        let undone = self.appender.undo(&left.file, &left.bytes, left.from);
+        match undone {
+            Ok(()) => {
+                self.left = None;
+                Ok(Known::Yes)
+            }
+            Err(error) if matches!(error.problem, Problem::Changed) => {
+                report::doubtful(&error, &String::from_utf8_lossy(&left.bytes));
+                let end = left.end;
+                self.left = None;
+                let count = self.rows.partition_point(|row| row.number < end);
+                self.rows.drain(..count);
+                Ok(Known::No)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn size(&self) -> usize {
+        self.rows.iter().map(KeptRow::size).sum()
     }
 
     fn bytes(&self) -> Vec<u8> {

@@ -48,7 +48,8 @@ pub(super) struct Outlets<'a> {
     on_stdout: OnStdout,
     /// How long a locked file is waited for.
     wait: Duration,
-    course: Course,
+    /// When the run is to be over; at once where it has no end of its own.
+    end: Option<Duration>,
     /// From the first row on.
     printer: Option<Printer>,
     /// The outputs whose header was printed.
@@ -73,7 +74,10 @@ impl<'a> Outlets<'a> {
                 Course::Endless => FILE_WAIT,
                 Course::Once { within } => within.map_or(FILE_WAIT_ONCE, |w| w.min(FILE_WAIT_ONCE)),
             },
-            course,
+            end: match course {
+                Course::Endless => Some(Duration::ZERO),
+                Course::Once { within } => within.map(|within| clock.now().saturating_add(within)),
+            },
             printer: None,
             begun: BTreeSet::new(),
             worst: None,
@@ -175,7 +179,7 @@ impl<'a> Outlets<'a> {
         let printed = self
             .printer
             .as_mut()
-            .and_then(|printer| printer.finish(self.course, &is_stopped, &*self.clock, report));
+            .and_then(|printer| printer.finish(self.end, &is_stopped, &*self.clock, report));
         printed.or(written)
     }
 }

@@ -7,7 +7,6 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender, TrySendError
 use std::thread;
 use std::time::Duration;
 
-use super::run::Course;
 use crate::commands::report::{self, Report};
 use crate::commands::{CommandError, ExitCode};
 use crate::transport::Clock;
@@ -97,18 +96,20 @@ impl Printer {
         Ok(())
     }
 
-    /// Waits until all is printed; where the reader stands still, not for long after a run without
-    /// end, or after a signal. Returns what to end with where something is not printed.
+    /// Waits until all is printed; where the reader stands still, not for long after `end`, which a
+    /// run without a deadline has not, or after a signal. Returns what to end with where something is
+    /// not printed.
     pub(super) fn finish(
         &mut self,
-        course: Course,
+        end: Option<Duration>,
         is_stopped: &dyn Fn() -> bool,
         clock: &dyn Clock,
         report: &mut Report,
     ) -> Option<ExitCode> {
         // Without it the thread ends when it has printed all.
         self.rows.take()?;
-        let mut end = None;
+        let mut end = end.map(|end| end.max(clock.now()).saturating_add(LAST_WAIT));
+        let mut is_told = false;
         let outcome = loop {
             match self.outcome.recv_timeout(TICK) {
                 Ok(outcome) => break outcome,
@@ -116,8 +117,10 @@ impl Printer {
                 Err(RecvTimeoutError::Timeout) => {}
             }
             let now = clock.now();
-            if end.is_none() && (course == Course::Endless || is_stopped()) {
-                end = Some(now.saturating_add(LAST_WAIT));
+            if !is_told && is_stopped() {
+                let soon = now.saturating_add(LAST_WAIT);
+                end = Some(end.map_or(soon, |end| end.min(soon)));
+                is_told = true;
             }
             if end.is_some_and(|end| now >= end) {
                 self.lost += self.waiting();
