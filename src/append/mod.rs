@@ -7,7 +7,8 @@
 //! replaced or cut to nothing is found out by itself, and begins with its header.
 //!
 //! * [`Start`] is how a file of such rows begins; [`Misfit`] is why one is not such a file.
-//! * [`commit`] is what happens under the lock, on anything that is a [`Store`].
+//! * [`commit`] is what happens under the lock, on anything that is a [`Store`]; [`undo`] removes what
+//!   one that failed has left.
 //! * `system` opens, locks and makes files; `numbered` has the names to go on with.
 //!
 //! The lock is `flock`: on a file server it holds where the server keeps locks, and where a file

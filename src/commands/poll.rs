@@ -1,7 +1,8 @@
 //! `poll`: many meters on many lines, over and over, or once.
 //!
 //! Each line has a thread of its own (see [`LineLoop`](crate::polling::LineLoop)); what they read
-//! comes together in `run`, which writes it with `outlets`, tells what is worth telling and, on a
+//! comes together in `run`, which writes it with `outlets` (to stdout by `printer`, into files by
+//! `files`), tells what is worth telling and, on a
 //! terminal, keeps a table up to date with `screen`. `arguments` makes the command line a site,
 //! `forecast` says what would be done.
 
