@@ -3,7 +3,7 @@
 
 use std::io;
 
-use meterpoll::append::{Kept, Problem, Removed, Start, Store, Syncing, commit};
+use meterpoll::append::{Kept, Problem, Removed, Start, Store, Syncing, commit, undo};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -165,6 +165,27 @@ fn what_cannot_be_removed_again_is_told_and_the_next_one_removes_it() {
     result.unwrap();
     assert_eq!(told.len(), 1);
     assert_eq!(store.bytes, b"a,b,c\n4,5,6\n");
+}
+
+#[test]
+fn what_could_not_be_removed_is_removed_before_it_is_written_again_unless_others_wrote() {
+    let rows = b"1,2,3\n4,5,6\n";
+    for holding in [&b"a,b,c\n0,0,0\n"[..], b""] {
+        let mut store = Memory::holding(holding);
+        (store.cannot_be_cut, store.cannot_be_synced) = (true, true);
+        let problem = add(&mut store, &header(), rows).0.unwrap_err();
+        let from = problem.left_from().unwrap();
+        assert_eq!(from, holding.len() as u64);
+        assert!(store.bytes.ends_with(rows));
+        let cut = undo(&mut store, &header(), rows, from).unwrap_err();
+        assert!(matches!(cut, Problem::Cut(_)), "{cut}");
+        (store.cannot_be_cut, store.cannot_be_synced) = (false, false);
+        let mut changed = Memory::holding([&*store.bytes, b"7,8,9\n"].concat());
+        let problem = undo(&mut changed, &header(), rows, from).unwrap_err();
+        assert!(matches!(problem, Problem::Changed), "{problem}");
+        undo(&mut store, &header(), rows, from).unwrap();
+        assert_eq!(store.bytes, holding);
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use super::Syncing;
 use super::error::{Kept, Problem};
 use super::examine::whole_lines;
 use super::start::Start;
-use super::store::Store;
+use super::store::{Store, bytes};
 use super::tail::Removed;
 
 /// Appends whole lines, all or none, in one write; in an empty file the header goes before them in
@@ -30,21 +30,17 @@ pub fn commit(
         store.cut(whole).map_err(Problem::Cut)?;
         tell(&removed);
     }
-    let mut bytes = if whole == 0 { start.head() } else { Vec::new() };
-    bytes.extend_from_slice(lines);
-    if !bytes.ends_with(b"\n") {
-        bytes.push(b'\n');
-    }
-    let written = match append(store, &bytes) {
-        Ok(written) => written,
+    let bytes = written(start, whole, lines);
+    let taken = match append(store, &bytes) {
+        Ok(taken) => taken,
         Err(source) => {
             let kept = restore(store, whole);
             return Err(Problem::Write { kept, source });
         }
     };
-    if written < bytes.len() {
+    if taken < bytes.len() {
         return Err(Problem::Short {
-            written,
+            written: taken,
             length: bytes.len(),
             kept: restore(store, whole),
         });
@@ -57,6 +53,38 @@ pub fn commit(
         return Err(Problem::Sync { kept, source });
     }
     Ok(())
+}
+
+/// Removes what an earlier [`commit`] of these lines has left from `from` on, so that they can be
+/// appended again and stand there once.
+///
+/// # Errors
+/// [`Problem::Changed`] where something else is there now: what became of them is not known then.
+pub fn undo(store: &mut dyn Store, start: &Start, lines: &[u8], from: u64) -> Result<(), Problem> {
+    let size = store.size().map_err(Problem::Read)?;
+    let expected = written(start, from, lines);
+    let is_longer = size.saturating_sub(from) > expected.len() as u64;
+    if size < from || is_longer {
+        return Err(Problem::Changed);
+    }
+    let left = bytes(store, from, size).map_err(Problem::Read)?;
+    if !expected.starts_with(&left) {
+        return Err(Problem::Changed);
+    }
+    if left.is_empty() {
+        return Ok(());
+    }
+    store.cut(from).map_err(Problem::Cut)
+}
+
+/// What is written for these lines behind so many bytes.
+fn written(start: &Start, whole: u64, lines: &[u8]) -> Vec<u8> {
+    let mut bytes = if whole == 0 { start.head() } else { Vec::new() };
+    bytes.extend_from_slice(lines);
+    if !bytes.ends_with(b"\n") {
+        bytes.push(b'\n');
+    }
+    bytes
 }
 
 /// One write; one that a signal came before has taken nothing.
@@ -72,6 +100,6 @@ fn append(store: &mut dyn Store, bytes: &[u8]) -> io::Result<usize> {
 fn restore(store: &mut dyn Store, size: u64) -> Kept {
     match store.cut(size) {
         Ok(()) => Kept::Before,
-        Err(_) => Kept::Unknown,
+        Err(_) => Kept::Unknown { from: size },
     }
 }

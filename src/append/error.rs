@@ -94,6 +94,10 @@ pub enum Problem {
         /// What is there now.
         kept: Kept,
     },
+    /// Rows that could not be removed after an earlier try are not there any more as they were
+    /// left, so they may have been written or not. They are not looked for again.
+    #[error("it has changed since rows were left there that could not be brought to the disk")]
+    Changed,
     /// The disk did not take them.
     #[error("the rows cannot be brought to the disk{kept}")]
     Sync {
@@ -109,16 +113,34 @@ pub enum Problem {
 pub enum Kept {
     /// What it held before.
     Before,
-    /// That, and perhaps part of the rows: they could not be removed. The next to append removes a
+    /// That, and perhaps some of the rows: they could not be removed. The next to append removes a
     /// line that is not whole.
-    Unknown,
+    Unknown {
+        /// Where they begin, in bytes from the beginning of the file.
+        from: u64,
+    },
+}
+
+impl Problem {
+    /// Where rows begin that may be in the file although they could not be written.
+    pub const fn left_from(&self) -> Option<u64> {
+        match self {
+            Self::Write { kept, .. } | Self::Short { kept, .. } | Self::Sync { kept, .. } => {
+                match kept {
+                    Kept::Before => None,
+                    Kept::Unknown { from } => Some(*from),
+                }
+            }
+            _ => None,
+        }
+    }
 }
 
 impl fmt::Display for Kept {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Before => Ok(()),
-            Self::Unknown => f.write_str(", and what was written of them cannot be removed"),
+            Self::Unknown { .. } => f.write_str(", and what was written of them cannot be removed"),
         }
     }
 }

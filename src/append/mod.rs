@@ -7,7 +7,8 @@
 //! replaced or cut to nothing is found out by itself, and begins with its header.
 //!
 //! * [`Start`] is how a file of such rows begins; [`Misfit`] is why one is not such a file.
-//! * [`commit`] is what happens under the lock, on anything that is a [`Store`].
+//! * [`commit`] is what happens under the lock, on anything that is a [`Store`]; [`undo`] removes what
+//!   one that failed has left.
 //! * `system` opens, locks and makes files; `numbered` has the names to go on with.
 //!
 //! The lock is `flock`: on a file server it holds where the server keeps locks, and where a file
@@ -30,7 +31,7 @@ use std::time::Duration;
 
 use crate::transport::Clock;
 
-pub use commit::commit;
+pub use commit::{commit, undo};
 pub use error::{AppendError, Kept, Problem};
 pub use start::{Misfit, Start};
 pub use store::Store;
@@ -117,6 +118,31 @@ impl Appender {
             return Ok(self.path.clone());
         }
         self.first_fitting(|file| self.append_at(file, lines, tell))
+    }
+
+    /// Removes what an earlier try to append these lines has left in `file` from `from` on, as
+    /// [`Problem::left_from`] says.
+    ///
+    /// # Errors
+    /// [`Problem::Changed`] where that is not there any more as it was left: the lines may have been
+    /// written or not. Any other leaves it as it is, to be tried again.
+    pub fn undo(&self, file: &Path, lines: &[u8], from: u64) -> Result<(), AppendError> {
+        let undone = self.undo_at(file, lines, from);
+        undone.map_err(|problem| AppendError {
+            file: file.to_owned(),
+            problem,
+        })
+    }
+
+    fn undo_at(&self, path: &Path, lines: &[u8], from: u64) -> Result<(), Problem> {
+        for _ in 0..TRIES {
+            let mut file = system::open(path)?.ok_or(Problem::Changed)?;
+            self.lock(&file)?;
+            if system::is_at(&file, path)? {
+                return commit::undo(&mut file, &self.start, lines, from);
+            }
+        }
+        Err(Problem::Restless)
     }
 
     /// Does it to the first file that fits.

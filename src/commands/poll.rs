@@ -1,13 +1,16 @@
 //! `poll`: many meters on many lines, over and over, or once.
 //!
 //! Each line has a thread of its own (see [`LineLoop`](crate::polling::LineLoop)); what they read
-//! comes together in `run`, which writes it with `outlets`, tells what is worth telling and, on a
+//! comes together in `run`, which writes it with `outlets` (to stdout by `printer`, into files by
+//! `files`), tells what is worth telling and, on a
 //! terminal, keeps a table up to date with `screen`. `arguments` makes the command line a site,
 //! `forecast` says what would be done.
 
 mod arguments;
+mod files;
 mod forecast;
 mod outlets;
+mod printer;
 mod run;
 mod screen;
 
@@ -38,14 +41,18 @@ pub(super) fn run(arguments: &Poll, report: &mut Report) -> Result<ExitCode, Com
         return print(forecast.to_string().as_bytes()).map(|_| code);
     }
     // Before anything is sent: where the rows cannot go, none are taken.
-    let outlets = Outlets::open(&site, Arc::clone(&clock), on_stdout)?;
+    let outlets = Outlets::open(&site, Arc::clone(&clock), on_stdout, course)?;
     let stop = match course {
         Course::Endless => Stop::listen_in_background(),
         Course::Once { .. } => Stop::listen(),
     };
     let run = Run::new(&site, outlets, &clock, &stop, report);
     let code = run.all(course, on_stdout)?;
-    Ok(stop.requested().unwrap_or(code))
+    Ok(match code {
+        // Rows that are nowhere matter more than who stopped it.
+        ExitCode::Output => code,
+        _ => stop.requested().unwrap_or(code),
+    })
 }
 
 fn course(arguments: &Poll, site: &Site) -> Course {

@@ -10,7 +10,7 @@ use std::path::Path;
 use super::hints::{failure_hint, hint, write_hint};
 use super::trouble::{self, Place};
 use super::{CommandError, ExitCode};
-use crate::append::Removed;
+use crate::append::{AppendError, Removed};
 use crate::cli::Usage;
 use crate::client::Failure;
 use crate::codec::ExceptionCode;
@@ -202,6 +202,14 @@ pub(super) fn problem(place: &str, text: &str) {
 pub(super) fn unknown(place: &str, failure: &Failure) {
     say(format_args!("error: {place}: {failure}"));
     causes(failure);
+}
+
+/// Prints that rows may be in a file or not, for it was changed before they could be removed.
+pub(super) fn doubtful(error: &AppendError, lines: &str) {
+    say(format_args!("error: {error}"));
+    for line in lines.lines() {
+        say(format_args!("may be written: {line}"));
+    }
 }
 
 /// Prints what was cut off a file, even when little is wanted: it may be gone for good.

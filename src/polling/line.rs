@@ -1,8 +1,8 @@
 //! The loop of one line: whatever is due is read, one meter at a time, and handed on.
 //!
 //! Each meter gets one row a slot, whatever happens. What is due first goes first, and of those due
-//! together a meter that was silent lately goes last. After [`DEAD`] silent rows such a meter is
-//! probed with one attempt a slot, until it answers; other sets of its points are not asked for in a
+//! together a meter that was silent lately goes last. After a silent row such a meter is probed with
+//! one attempt a slot, until it answers; other sets of its points are not asked for in a
 //! slot in which it was silent. A port that is away is looked for once a slot.
 
 use std::collections::BTreeMap;
@@ -16,9 +16,6 @@ use crate::client::{Client, Patience};
 use crate::codec::Unit;
 use crate::readings::{Fault, Memory, Row, Trouble, take};
 use crate::transport::{Clock, OpenError, TransportError};
-
-/// After so many silent rows a unit is probed and no more.
-pub const DEAD: u32 = 3;
 
 /// A wait is cut into pieces of this length, so that it can be ended.
 const PIECE: Duration = Duration::from_millis(100);
@@ -101,18 +98,10 @@ pub struct LineLoop<'a> {
     client: Option<Client>,
     /// What was learned of each meter.
     memories: BTreeMap<usize, Memory>,
-    silences: BTreeMap<Unit, Silence>,
+    /// When the last row of a unit was silent: that of those whose was.
+    silences: BTreeMap<Unit, Duration>,
     /// When the port was last found to be away.
     away_at: Option<Duration>,
-}
-
-/// How a unit has been silent.
-#[derive(Debug, Clone, Copy)]
-struct Silence {
-    /// For so many rows, without one in between.
-    rows: u32,
-    /// When it last was.
-    at: Duration,
 }
 
 impl<'a> LineLoop<'a> {
@@ -274,7 +263,7 @@ impl<'a> LineLoop<'a> {
             Some(Spared::Deadline)
         } else if self.away_at.is_some_and(|at| at >= slot.due) {
             Some(Spared::PortAway)
-        } else if silence.is_some_and(|silence| silence.at >= slot.due) {
+        } else if silence.is_some_and(|at| *at >= slot.due) {
             Some(Spared::Silent)
         } else {
             None
@@ -307,7 +296,7 @@ impl<'a> LineLoop<'a> {
     fn patience(&self, job: &Job, left: Option<Duration>) -> Patience {
         let mut patience = job.patience;
         let silence = self.silences.get(&job.subject.unit);
-        if silence.is_some_and(|silence| silence.rows >= DEAD) || self.away_at.is_some() {
+        if silence.is_some() || self.away_at.is_some() {
             patience.retries = 0;
         }
         if let Some(left) = left {
@@ -330,9 +319,7 @@ impl<'a> LineLoop<'a> {
             return;
         }
         if is_silent && !has_value {
-            let rows = self.silences.get(&unit).map_or(0, |silence| silence.rows);
-            let rows = rows.saturating_add(1);
-            self.silences.insert(unit, Silence { rows, at });
+            self.silences.insert(unit, at);
         } else {
             self.silences.remove(&unit);
         }

@@ -1,22 +1,24 @@
-//! Where the rows of a poll go: to stdout at once, and into files when a line is idle. What a file
-//! does not take is kept, and tried again with the next rows.
+//! Where the rows of a poll go: to stdout at once, and into files when a line is idle.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::{self, Stdout};
-use std::path::{Path, PathBuf};
+use std::io::ErrorKind;
+use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use jiff::Timestamp;
-use log::info;
 
-use crate::append::{AppendError, AppendOptions, Appender, OnMisfit, Removed, Start, Syncing};
-use crate::commands::CommandError;
+use super::files::{Files, Series};
+use super::printer::Printer;
+use super::run::Course;
+use crate::append::{AppendOptions, Appender, OnMisfit, Start, Syncing};
 use crate::commands::report::{self, Report};
+use crate::commands::{CommandError, ExitCode};
 use crate::output::csv::{Names, WIDE_COLUMNS};
 use crate::output::influx::INFLUX_NAMES;
-use crate::output::{Influx, JsonLines, LineFormat, LongCsv, Sink, Stream, WideCsv};
+use crate::output::{Influx, JsonLines, LineFormat, LongCsv, WideCsv};
 use crate::polling::site::{
     ColumnUnits, FailedRows, OnSchemaChange, PathTemplate, RowForm, RowSync,
 };
@@ -27,11 +29,8 @@ use crate::transport::Clock;
 /// for.
 const FILE_WAIT: Duration = Duration::from_secs(1);
 
-/// A file that does not take rows is left alone so long before it is tried again.
-const TRY_AGAIN: Duration = Duration::from_secs(2);
-
-/// So many bytes of rows are kept for a file that does not take them.
-const MOST_KEPT: usize = 4 * 1024 * 1024;
+/// The same where everything is read once: nobody is kept waiting by that.
+const FILE_WAIT_ONCE: Duration = Duration::from_secs(10);
 
 /// Whether rows without a file are printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,31 +46,17 @@ pub(super) struct Outlets<'a> {
     site: &'a Site,
     clock: Arc<dyn Clock>,
     on_stdout: OnStdout,
-    streams: BTreeMap<usize, Stream<Stdout, Box<dyn LineFormat>>>,
-    /// By output and path.
-    files: BTreeMap<(usize, PathBuf), OpenFile>,
-}
-
-/// A file that rows go to, and those that are not there yet.
-struct OpenFile {
-    appender: Appender,
-    format: Box<dyn LineFormat>,
-    lines: Vec<u8>,
-    health: Health,
-}
-
-/// Whether a file takes rows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Health {
-    /// It does, for all that is known.
-    Good,
-    /// It did not the last time.
-    Failing {
-        /// How many bytes were given up since.
-        lost: usize,
-        /// When it is tried again.
-        again: Duration,
-    },
+    /// How long a locked file is waited for.
+    wait: Duration,
+    /// When the run is to be over; at once where it has no end of its own.
+    end: Option<Duration>,
+    /// From the first row on.
+    printer: Option<Printer>,
+    /// The outputs whose header was printed.
+    begun: BTreeSet<usize>,
+    /// What to end with, where something went wrong that did not end it.
+    worst: Option<ExitCode>,
+    files: Files,
 }
 
 impl<'a> Outlets<'a> {
@@ -80,23 +65,35 @@ impl<'a> Outlets<'a> {
         site: &'a Site,
         clock: Arc<dyn Clock>,
         on_stdout: OnStdout,
+        course: Course,
     ) -> Result<Self, CommandError> {
-        let mut outlets = Self {
+        let outlets = Self {
             site,
-            clock,
             on_stdout,
-            streams: BTreeMap::new(),
-            files: BTreeMap::new(),
+            wait: match course {
+                Course::Endless => FILE_WAIT,
+                Course::Once { within } => within.map_or(FILE_WAIT_ONCE, |w| w.min(FILE_WAIT_ONCE)),
+            },
+            end: match course {
+                Course::Endless => Some(Duration::ZERO),
+                Course::Once { within } => within.map(|within| clock.now().saturating_add(within)),
+            },
+            printer: None,
+            begun: BTreeSet::new(),
+            worst: None,
+            files: Files::new(Arc::clone(&clock), course),
+            clock,
         };
         let now = outlets.clock.utc_now();
         for job in &site.jobs {
             if let Some(output) = site.outputs.get(job.output)
                 && let Some(path) = path(job, output, now)
             {
-                outlets.file(job, output, path)?.appender.check()?;
+                let (start, options) = beginning(job, output, outlets.wait)?;
+                let clock = Arc::clone(&outlets.clock);
+                Appender::new(path, start, options, clock).check()?;
             }
         }
-        outlets.files.clear();
         Ok(outlets)
     }
 
@@ -111,127 +108,79 @@ impl<'a> Outlets<'a> {
             return Ok(());
         }
         if let Some(path) = path(job, output, cycle.row.time) {
-            let file = self.file(job, output, path)?;
-            let lines = file.format.lines(&job.points, &cycle.row);
-            file.lines.extend(lines.map_err(CommandError::Output)?);
-            return Ok(());
+            let lines = format(output.form).lines(&job.points, &cycle.row);
+            let lines = lines.map_err(CommandError::Output)?;
+            let wait = self.wait;
+            let begin = || beginning(job, output, wait);
+            return self.files.row(series(job, output), path, lines, begin);
         }
         if self.on_stdout == OnStdout::Table {
             return Ok(());
         }
-        let stream = self.streams.entry(job.output);
-        let stream = stream.or_insert_with(|| Stream::new(io::stdout(), format(output.form)));
-        stream
-            .row(&job.points, &cycle.row)
-            .map_err(CommandError::Output)
+        let format = format(output.form);
+        let is_first = !self.begun.contains(&job.output);
+        let mut bytes = if is_first {
+            format
+                .start(&job.points)
+                .map_err(CommandError::Output)?
+                .head()
+        } else {
+            Vec::new()
+        };
+        let lines = format.lines(&job.points, &cycle.row);
+        bytes.extend(lines.map_err(CommandError::Output)?);
+        let printer = self
+            .printer
+            .get_or_insert_with(|| Printer::start(site.jobs.len()));
+        if printer.row(bytes) {
+            self.begun.insert(job.output);
+        }
+        Ok(())
+    }
+
+    /// Looks after stdout.
+    ///
+    /// # Errors
+    /// Where it takes nothing any more, and rows go nowhere else.
+    pub(super) fn look(&mut self, report: &mut Report) -> Result<(), CommandError> {
+        let Some(Err(error)) = self.printer.as_mut().map(Printer::look) else {
+            return Ok(());
+        };
+        if self.site.outputs.iter().all(|output| output.path.is_none()) {
+            return Err(error);
+        }
+        match &error {
+            CommandError::Output(cause) if cause.kind() == ErrorKind::BrokenPipe => {
+                report::warning("stdout was closed: no more rows go there");
+                self.worst = Some(ExitCode::Output);
+            }
+            error => self.worst = Some(report.error(error)),
+        }
+        Ok(())
     }
 
     /// Whether there is anything to write.
     pub(super) fn has_rows(&self) -> bool {
-        self.files.values().any(|file| !file.lines.is_empty())
+        self.files.has_rows()
     }
 
     /// Writes what is not in its file yet. What goes wrong is told when it begins and when it is
     /// over.
     pub(super) fn flush(&mut self, report: &mut Report) {
-        for ((_, path), file) in &mut self.files {
-            if let Health::Failing { lost, again } = file.health
-                && self.clock.now() < again
-            {
-                let lost = lost + file.keep_within(MOST_KEPT);
-                file.health = Health::Failing { lost, again };
-                continue;
-            }
-            match (file.append(), file.health) {
-                (Ok(()), Health::Good) => {}
-                (Ok(()), Health::Failing { lost, .. }) => {
-                    file.health = Health::Good;
-                    let lost = match lost {
-                        0 => String::new(),
-                        lost => format!("; {lost} bytes of rows are lost"),
-                    };
-                    report.remark(&format!("{}: written again{lost}", path.display()));
-                }
-                (Err(error), health) => {
-                    let before = match health {
-                        Health::Failing { lost, .. } => lost,
-                        Health::Good => {
-                            report.error(&CommandError::Append(error));
-                            0
-                        }
-                    };
-                    let lost = before + file.keep_within(MOST_KEPT);
-                    let again = self.clock.now().saturating_add(TRY_AGAIN);
-                    file.health = Health::Failing { lost, again };
-                }
-            }
-        }
-        // The next rows of a site with times in its paths go to others.
-        self.files.retain(|_, file| !file.lines.is_empty());
+        self.files.flush(report);
     }
 
-    /// Writes what is left.
-    pub(super) fn finish(&mut self) -> Result<(), CommandError> {
-        let mut result = Ok(());
-        for file in self.files.values_mut() {
-            if let Err(error) = file.append() {
-                let lines = String::from_utf8_lossy(&file.lines).into_owned();
-                result = Err(CommandError::Unwritten { error, lines });
-            }
-        }
-        result
-    }
-
-    /// The file of this path and output, which is not opened by that.
-    fn file(
-        &mut self,
-        job: &Job,
-        output: &SiteOutput,
-        path: PathBuf,
-    ) -> Result<&mut OpenFile, CommandError> {
-        match self.files.entry((job.output, path)) {
-            Entry::Occupied(file) => Ok(file.into_mut()),
-            Entry::Vacant(place) => {
-                let format = format(output.form);
-                let start = format.start(&job.points).map_err(CommandError::Output)?;
-                let path = place.key().1.clone();
-                let clock = Arc::clone(&self.clock);
-                Ok(place.insert(OpenFile {
-                    appender: Appender::new(path, start, options(output), clock),
-                    format,
-                    lines: Vec::new(),
-                    health: Health::Good,
-                }))
-            }
-        }
-    }
-}
-
-impl OpenFile {
-    fn append(&mut self) -> Result<(), AppendError> {
-        if self.lines.is_empty() {
-            return Ok(());
-        }
-        let mut tell = |file: &Path, removed: &Removed| report::removed(file, removed);
-        let file = self.appender.append(&self.lines, &mut tell)?;
-        let file = std::path::absolute(&file).unwrap_or(file);
-        info!("wrote {} bytes to {}", self.lines.len(), file.display());
-        self.lines.clear();
-        Ok(())
-    }
-
-    /// Gives up the oldest rows, whole ones, until no more than so many bytes are left; returns how
-    /// many were given up.
-    fn keep_within(&mut self, most: usize) -> usize {
-        let over = self.lines.len().saturating_sub(most);
-        if over == 0 {
-            return 0;
-        }
-        let rest = self.lines.iter().skip(over);
-        let to_line_end = rest.take_while(|byte| **byte != b'\n').count() + 1;
-        let given_up = (over + to_line_end).min(self.lines.len());
-        self.lines.drain(..given_up);
-        given_up
+    /// Writes what is left. Every file that does not take it is told, with the rows that are lost by
+    /// that.
+    /// Returns what to end with where there are such.
+    pub(super) fn finish(&mut self, report: &mut Report, stop: &AtomicBool) -> Option<ExitCode> {
+        let written = self.files.finish(report).or(self.worst);
+        let is_stopped = || stop.load(Ordering::Relaxed);
+        let printed = self
+            .printer
+            .as_mut()
+            .and_then(|printer| printer.finish(self.end, &is_stopped, &*self.clock, report));
+        printed.or(written)
     }
 }
 
@@ -247,7 +196,25 @@ fn path(job: &Job, output: &SiteOutput, time: Timestamp) -> Option<PathBuf> {
     Some(path.at(&job.subject.file_name, time))
 }
 
-fn options(output: &SiteOutput) -> AppendOptions {
+/// Which files follow one another.
+fn series(job: &Job, output: &SiteOutput) -> Series {
+    let path = output.path.as_ref();
+    let has_own = path.is_some_and(PathTemplate::names_the_meter);
+    let meter = if has_own { &*job.subject.name } else { "" };
+    (job.output, meter.to_owned())
+}
+
+/// How a file begins that such rows go to, and how they do.
+fn beginning(
+    job: &Job,
+    output: &SiteOutput,
+    wait: Duration,
+) -> Result<(Start, AppendOptions), CommandError> {
+    let start = format(output.form).start(&job.points);
+    Ok((start.map_err(CommandError::Output)?, options(output, wait)))
+}
+
+fn options(output: &SiteOutput, wait: Duration) -> AppendOptions {
     AppendOptions {
         on_misfit: match output.on_schema_change {
             OnSchemaChange::Refuse => OnMisfit::Refuse,
@@ -257,7 +224,7 @@ fn options(output: &SiteOutput) -> AppendOptions {
             RowSync::Each => Syncing::Each,
             RowSync::Never => Syncing::Never,
         },
-        wait: FILE_WAIT,
+        wait,
     }
 }
 

@@ -1,9 +1,13 @@
 //! A poll under way: a thread a line, and one place where what they read comes together.
 
+use std::any::Any;
 use std::io::{self, IsTerminal};
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::Arc;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+// It is bounded: what reads waits for what writes, and misses slots, before rows pile up.
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender as Sender};
 use std::thread;
 use std::time::Duration;
 
@@ -28,6 +32,13 @@ const TICK: Duration = Duration::from_millis(250);
 
 /// Rows wait so long for others to be written with, where a line is never idle.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
+
+/// Files are written no more often, however many lines become idle: each time costs a sync of the
+/// disk.
+const SHORTEST_WAIT: Duration = Duration::from_millis(250);
+
+/// So much that lines have said may wait to be heard.
+const MOST_WAITING: usize = 1024;
 
 /// How long it goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +80,10 @@ pub(super) struct Run<'a> {
     faults: Vec<Fault>,
     /// Rows of meters that were not asked, for want of a port and of time.
     untried: (usize, usize),
-    flushed: Duration,
+    /// When files are written again at the earliest, and at the latest.
+    next_flush: (Duration, Duration),
+    /// Whether a line has become idle since they were.
+    is_idle: bool,
     has_rows: bool,
 }
 
@@ -109,12 +123,16 @@ impl<'a> Run<'a> {
             delivered: 0,
             faults: Vec::new(),
             untried: (0, 0),
-            flushed: clock.now(),
+            next_flush: (Duration::ZERO, clock.now().saturating_add(LONGEST_WAIT)),
+            is_idle: false,
             has_rows: false,
         }
     }
 
     /// Polls to the end.
+    ///
+    /// # Panics
+    /// When the thread of a line has: after the rows that there are were written.
     pub(super) fn all(
         mut self,
         course: Course,
@@ -131,11 +149,22 @@ impl<'a> Run<'a> {
             halt: AtomicBool::new(false),
             hurry: Arc::default(),
         };
+        let broken: Mutex<Option<Box<dyn Any + Send>>> = Mutex::default();
         let result = thread::scope(|scope| {
-            let (sender, receiver) = mpsc::channel();
+            let (sender, receiver) = mpsc::sync_channel(MOST_WAITING);
             for (index, line) in self.site.lines.iter().enumerate() {
                 let (shared, sender) = (&shared, sender.clone());
-                scope.spawn(move || shared.poll(index, line, &sender));
+                let broken = &broken;
+                scope.spawn(move || {
+                    let poll = AssertUnwindSafe(|| shared.poll(index, line, &sender));
+                    if let Err(cause) = panic::catch_unwind(poll) {
+                        // The others do not go on for years as if nothing were missing.
+                        shared.halt.store(true, Ordering::Relaxed);
+                        if let Ok(mut first) = broken.lock() {
+                            first.get_or_insert(cause);
+                        }
+                    }
+                });
             }
             // Only the lines hold it: when the last of them has ended, so has the channel.
             drop(sender);
@@ -147,24 +176,47 @@ impl<'a> Run<'a> {
             screen.draw(&self.board, self.clock.utc_now());
             screen.leave();
         }
-        let written = self.outlets.finish();
+        let written = self.outlets.finish(self.report, &shared.stop);
         self.conclude(course);
-        result.and(written)?;
-        Ok(ExitCode::of(self.delivered, &self.faults))
+        if let Ok(Some(cause)) = broken.into_inner() {
+            panic::resume_unwind(cause);
+        }
+        match (result, written) {
+            (result, None) => result.map(|()| ExitCode::of(self.delivered, &self.faults)),
+            (Ok(()), Some(code)) => Ok(code),
+            // Rows that are nowhere matter more than why it ended.
+            (Err(error), Some(code)) => {
+                self.report.error(&error);
+                Ok(code)
+            }
+        }
     }
 
-    /// Takes what the lines say, until all have ended.
+    /// Takes what the lines say, until all have ended: rows that come after something went wrong are
+    /// for files as well.
     fn receive(
         &mut self,
         shared: &Shared<'_>,
         events: &Receiver<(usize, Event)>,
     ) -> Result<(), CommandError> {
         let start = self.clock.now();
+        let mut result = Ok(());
         loop {
-            match events.recv_timeout(TICK) {
-                Ok((line, event)) => self.event(shared, line, event)?,
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            let first = match events.recv_timeout(TICK) {
+                Ok(event) => Some(event),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => return result,
+            };
+            // What has come meanwhile is written in one go.
+            let mut ended = Ok(());
+            let further = events.try_iter().take(MOST_WAITING);
+            for (line, event) in first.into_iter().chain(further) {
+                ended = ended.and(self.event(shared, line, event));
+            }
+            ended = ended.and(self.outlets.look(self.report));
+            if result.is_ok() && ended.is_err() {
+                shared.halt.store(true, Ordering::Relaxed);
+                result = ended;
             }
             let now = self.clock.now();
             if let Course::Once { within: Some(time) } = shared.course
@@ -172,8 +224,9 @@ impl<'a> Run<'a> {
             {
                 shared.hurry.store(true, Ordering::Relaxed);
             }
-            let is_endless = shared.course == Course::Endless;
-            if is_endless && now.saturating_sub(self.flushed) >= LONGEST_WAIT {
+            let (earliest, latest) = self.next_flush;
+            let is_time = now >= latest || (self.is_idle && now >= earliest);
+            if is_time && shared.course == Course::Endless {
                 self.flush();
             }
             if let Some(screen) = &mut self.screen {
@@ -190,7 +243,7 @@ impl<'a> Run<'a> {
     ) -> Result<(), CommandError> {
         match event {
             Event::Cycle(cycle) => self.cycle(shared, &cycle)?,
-            Event::Idle => self.flush(),
+            Event::Idle => self.is_idle = true,
             Event::Open => {
                 let state = self.ports.get_mut(line);
                 let before = state.map(|state| std::mem::replace(state, PortState::Open));
@@ -321,13 +374,19 @@ impl<'a> Run<'a> {
     }
 
     fn flush(&mut self) {
-        self.flushed = self.clock.now();
+        let start = self.clock.now();
         if let Some(screen) = &mut self.screen
             && self.outlets.has_rows()
         {
             screen.erase();
         }
         self.outlets.flush(self.report);
+        // A slow disk is given as much time without as it has taken.
+        let end = self.clock.now();
+        let pause = end.saturating_sub(start).max(SHORTEST_WAIT);
+        let latest = pause.max(LONGEST_WAIT);
+        self.next_flush = (end.saturating_add(pause), end.saturating_add(latest));
+        self.is_idle = false;
     }
 
     /// Says what all of it came to.
