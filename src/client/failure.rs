@@ -73,7 +73,7 @@ impl Failure {
             Self::Exception(code) => {
                 *code == ExceptionCode::GATEWAY_TARGET_DEVICE_FAILED_TO_RESPOND
             }
-            Self::Port(_) | Self::Ambiguous | Self::NeverQuiet { .. } => false,
+            Self::Port(_) | Self::Ambiguous | Self::NeverQuiet { .. } | Self::Stopped => false,
             _ => true,
         }
     }

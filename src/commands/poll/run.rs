@@ -30,6 +30,9 @@ use crate::transport::Clock;
 /// The table is drawn anew so often.
 const TICK: Duration = Duration::from_millis(250);
 
+/// The row in hand gets so long once a signal has come: that of a meter that answers takes less.
+const LAST_ROW: Duration = Duration::from_secs(1);
+
 /// Rows wait so long for others to be written with, where a line is never idle.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
@@ -96,7 +99,8 @@ struct Shared<'a> {
     stop: Arc<AtomicBool>,
     /// Raised when rows have nowhere to go.
     halt: AtomicBool,
-    /// Raised when the time is over: no answer is waited for any longer than it must be.
+    /// Raised when the time is over, that after a signal too: no answer is waited for any longer than it
+    /// must be.
     hurry: Arc<AtomicBool>,
 }
 
@@ -201,6 +205,7 @@ impl<'a> Run<'a> {
     ) -> Result<(), CommandError> {
         let start = self.clock.now();
         let mut result = Ok(());
+        let mut stopped = None;
         loop {
             let first = match events.recv_timeout(TICK) {
                 Ok(event) => Some(event),
@@ -219,9 +224,14 @@ impl<'a> Run<'a> {
                 result = ended;
             }
             let now = self.clock.now();
-            if let Course::Once { within: Some(time) } = shared.course
-                && now.saturating_sub(start) >= time
-            {
+            if stopped.is_none() && shared.stop.load(Ordering::Relaxed) {
+                stopped = Some(now);
+            }
+            let is_over = match shared.course {
+                Course::Once { within: Some(time) } => now.saturating_sub(start) >= time,
+                _ => false,
+            };
+            if is_over || stopped.is_some_and(|at| now.saturating_sub(at) >= LAST_ROW) {
                 shared.hurry.store(true, Ordering::Relaxed);
             }
             let (earliest, latest) = self.next_flush;
