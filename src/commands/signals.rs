@@ -8,7 +8,6 @@
 //!
 //! SIGXFSZ ends nothing: what cannot be written is told as such.
 
-use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -38,7 +37,8 @@ enum Second {
     Waits,
 }
 
-/// What SIGHUP does.
+/// What SIGHUP does, where there is one.
+#[cfg_attr(not(unix), allow(dead_code, reason = "there is none"))]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum HangUp {
     /// It ends the program, after the row in hand.
@@ -56,13 +56,8 @@ impl Stop {
     /// The same for what goes on for years: where it has no terminal, SIGHUP does not end it. That is
     /// what programs that rename its files send; the next rows go into new ones anyway.
     pub(super) fn listen_in_background() -> Self {
-        let terminals = [
-            io::stdin().is_terminal(),
-            io::stdout().is_terminal(),
-            io::stderr().is_terminal(),
-        ];
         #[cfg(unix)]
-        if terminals == [false; 3] {
+        if !has_terminal() {
             // Nobody looks at this flag: it keeps the signal from ending the program.
             let _ = flag::register(SIGHUP, Arc::default());
             return Self::listening(Second::Ends, HangUp::Passes);
@@ -136,6 +131,14 @@ impl Stop {
         .into_iter()
         .find(|exit| usize::from(*exit as u8) == code)
     }
+}
+
+/// Whether any of the standard streams is a terminal.
+#[cfg(unix)]
+fn has_terminal() -> bool {
+    use std::io::{self, IsTerminal};
+
+    io::stdin().is_terminal() || io::stdout().is_terminal() || io::stderr().is_terminal()
 }
 
 /// Whether somebody wants the program to outlive its terminal, as `nohup` does, where the system
