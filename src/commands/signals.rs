@@ -91,6 +91,8 @@ impl Stop {
                 note(signal, exit);
             }
         }
+        #[cfg(not(unix))]
+        let _ = hang_up;
         #[cfg(unix)]
         {
             if hang_up == HangUp::Ends && !ignores_hang_ups() {
